@@ -1,0 +1,25 @@
+"""Integer arithmetic that the twin's stages share: exact, vectorized, no floating-point result."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .config import Format
+
+
+def round_shift(value, shift: int):
+    """`value / 2**shift`, rounded half up: add half a unit, then shift right arithmetically."""
+    return (value + (1 << (shift - 1))) >> shift
+
+
+def saturate(value, fmt: Format):
+    """Clamp integer codes to the range of `fmt`."""
+    return np.clip(value, fmt.min, fmt.max)
+
+
+def bit_length(value):
+    """Number of bits of the integers `value`, 0 <= value < 2**53 (0 for 0).
+
+    frexp of an integer below 2**53 is exact, so this is an integer operation in disguise.
+    """
+    return np.frexp(value.astype(np.float64))[1].astype(np.int64)

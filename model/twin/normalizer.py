@@ -1,0 +1,79 @@
+"""Twin of rtl/normalizer.v: an interpolated normal of any length becomes a unit normal.
+
+The paper's "extra hardware ... to normalize the outputs of the interpolators" (Conclusion).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .. import fixed
+from ..config import Config
+from .inverse_sqrt import inverse_sqrt
+
+
+def leading_zeros(normal, config: Config):
+    """Stage 1: the shift that brings the largest of three components (int64[3, n]) to the top."""
+    sign = normal >> (config.normal.bits - 1)
+    ones = (normal[0] ^ sign[0]) | (normal[1] ^ sign[1]) | (normal[2] ^ sign[2])
+    return config.normal.bits - 1 - fixed.bit_length(ones)
+
+
+def align(normal, shift, config: Config):
+    """Stage 2: block-normalized components in `mantissa`, rounded half up and saturated."""
+    drop = config.normal.bits - config.mantissa.bits
+    mantissa = fixed.round_shift(normal << shift, drop)
+    return np.minimum(mantissa, config.mantissa.max)
+
+
+def sum_of_squares(mantissa):
+    """Stage 3: |m|**2, exact. 1/4 <= |m|**2 <= 3, or 0 for the zero vector."""
+    return (mantissa * mantissa).sum(axis=0)
+
+
+def root_operand(square, config: Config):
+    """Stage 4: |m|**2 as `root_operand` in [1, 4), times 4 if below 1 (`below_one`)."""
+    one = 2 * config.mantissa.fraction
+    below_one = (square >> one) == 0
+    drop = one - config.root_operand.fraction
+    return np.where(below_one, square >> (drop - 2), square >> drop), below_one
+
+
+def scale(mantissa, root, below_one):
+    """Stage 6: m / |m|, exact products; doubled if the operand was taken four times."""
+    return (mantissa * root) << below_one
+
+
+def round_unit(product, config: Config):
+    """Stage 7: the unit normal in `unit`, and |Zn| in `cosine`, each rounded once."""
+    fraction = config.mantissa.fraction + config.root.fraction
+    unit = fixed.saturate(
+        fixed.round_shift(product, fraction - config.unit.fraction), config.unit
+    )
+    cosine = fixed.saturate(
+        fixed.round_shift(np.abs(product[2]), fraction - config.cosine.fraction), config.cosine
+    )
+    return unit, cosine
+
+
+def normalizer(normal, config: Config, trace: dict | None = None):
+    """Unit normal and |cos(i)| of interpolated normals.
+
+    normal: int64[3, n] in `normal`. Returns unit int64[3, n] in `unit` and |Zn| int64[n] in
+    `cosine`, which keeps one more bit. The zero vector gives zeros.
+    """
+    shift = leading_zeros(normal, config)
+    mantissa = align(normal, shift, config)
+    square = sum_of_squares(mantissa)
+    operand, below_one = root_operand(square, config)
+    root = inverse_sqrt(operand, config, trace)
+    product = scale(mantissa, root, below_one)
+    unit, cosine = round_unit(product, config)
+    if trace is not None:
+        trace["normalizer.leading_zeros"] = (shift,)
+        trace["normalizer.align"] = tuple(mantissa)
+        trace["normalizer.sum_of_squares"] = (square,)
+        trace["normalizer.root_operand"] = (operand, below_one.astype(np.int64))
+        trace["normalizer.scale"] = tuple(product)
+        trace["normalizer.round"] = (*unit, cosine)
+    return unit, cosine

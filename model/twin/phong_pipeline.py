@@ -1,0 +1,65 @@
+"""Twin of rtl/phong_pipeline.v: spans in, pixels out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..config import DEFAULT, Config
+from ..frame import Frame
+from .normal_interpolator import normal_interpolator
+from .normalizer import normalizer
+from .shading_unit import shading_unit
+from .span_walker import span_walker
+
+#: Pixels worked on at a time: the temporaries of one block fit the cache.
+BLOCK = 1 << 14
+
+
+@dataclass
+class Pixels:
+    """Pixels in the order of the stream: x, y int64[n], rgb int64[n, 3], last bool[n]."""
+
+    x: np.ndarray
+    y: np.ndarray
+    rgb: np.ndarray
+    last: np.ndarray
+
+
+def interpolate(spans, span, k, config: Config):
+    """The three interpolators: normals int64[3, n], and whether a component left its word."""
+    parts = [
+        normal_interpolator(spans["start"][span, axis], spans["step"][span, axis], k, config)
+        for axis in range(3)
+    ]
+    return np.stack([p[0] for p in parts]), parts[0][1] | parts[1][1] | parts[2][1]
+
+
+def shade(normal, material, frame: Frame, config: Config = DEFAULT, trace: dict | None = None):
+    """Codes int64[3, n] of interpolated normals (int64[3, n] in `normal`) and their materials.
+
+    Lit is decided on the interpolated Zn itself, before any rounding.
+    """
+    lit = (normal[2] > 0) | (frame.two_sided & (normal[2] < 0))
+    unit, cosine = normalizer(normal, config, trace)
+    return shading_unit(unit, cosine, lit, material, frame, config, trace)
+
+
+def render(
+    frame: Frame, config: Config = DEFAULT, progress: Callable[[float], None] | None = None
+) -> Pixels:
+    """All pixels of `frame`, to the bit as the RTL gives them."""
+    spans = frame.spans
+    total = int(np.maximum(spans["length"], 1).sum())
+    x, y = np.empty(total, np.int64), np.empty(total, np.int64)
+    rgb, last = np.empty((total, 3), np.int64), np.empty(total, bool)
+    for first in range(0, total, BLOCK):
+        block = slice(first, min(first + BLOCK, total))
+        span, k, x[block], y[block], last[block] = span_walker(spans, first, block.stop, config)
+        normal, _ = interpolate(spans, span, k, config)
+        rgb[block] = shade(normal, spans["material"][span], frame, config).T
+        if progress:
+            progress(block.stop / total)
+    return Pixels(x, y, rgb, last)

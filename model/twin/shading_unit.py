@@ -1,0 +1,53 @@
+"""Twin of rtl/shading_unit.v: the paper's eq. (3) for red, green and blue.
+
+S = Cp [cos(i) (1 - d) + d] + W(i) cos(s)**n = Cp d + Cp (1 - d) cos(i) + W(i) cos(s)**n
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .. import fixed
+from ..config import Config
+from .reflection import reflection
+from .specular_power import specular_power
+from .specular_weight import specular_weight
+
+
+def intensity(ambient, diffuse, cosine, weight, power, lit, config: Config):
+    """Stage: S per channel, int64[3, n], all products whole; clamped to 1, cut to `intensity`."""
+    coefficient, cos, power_f = config.coefficient, config.cosine, config.power
+    fraction = config.weight.fraction + power_f.fraction
+    s = (ambient << (fraction - coefficient.fraction)) + np.where(
+        lit,
+        ((diffuse * cosine) << (fraction - coefficient.fraction - cos.fraction)) + weight * power,
+        0,
+    )
+    return np.minimum(s, 1 << fraction) >> (fraction - config.intensity.fraction)
+
+
+def code(s, config: Config):
+    """Stage: floor(255 S + 1/2), linear, no gamma."""
+    white = (1 << config.colour_bits) - 1
+    return fixed.round_shift(s * white, config.intensity.fraction)
+
+
+def shading_unit(unit, cosine, lit, material, frame, config: Config, trace: dict | None = None):
+    """Codes of red, green, blue, int64[3, n].
+
+    unit: int64[3, n] in `unit`; cosine: Zn in `cosine`; lit: bool[n]; material: int[n];
+    frame: model.frame.Frame (registers and material table).
+    """
+    table = frame.materials
+    v = reflection(unit, frame.half_vector, config, trace)
+    power = specular_power(v, table.exponent[material], config, trace)
+    weight = specular_weight(cosine, material, table.weight, config, trace)
+    s = intensity(
+        table.ambient.T[:, material], table.diffuse.T[:, material],
+        cosine, weight, power, lit, config,
+    )  # fmt: skip
+    colour = code(s, config)
+    if trace is not None:
+        trace["shading_unit.intensity"] = tuple(s)
+        trace["shading_unit.code"] = tuple(colour)
+    return colour

@@ -1,0 +1,133 @@
+// colour_channel: the paper's eq. (3) for one of red, green, blue, summed, clamped and coded,
+//   S = Cp d + Cp (1 - d) cos(i) + specular, code = floor(255 clamp(S, 0, 1) + 1/2).
+// One result a clock; latency below, counted from cosine and lit.
+`default_nettype none
+`include "phong_config.vh"
+`include "latency.vh"
+
+module colour_channel #(
+    parameter MATERIAL_BITS        = `PHONG_MATERIAL_BITS,
+    parameter COEFFICIENT_BITS     = `PHONG_COEFFICIENT_BITS,
+    parameter COEFFICIENT_FRACTION = `PHONG_COEFFICIENT_FRACTION,
+    parameter COSINE_BITS          = `PHONG_COSINE_BITS,
+    parameter COSINE_FRACTION      = `PHONG_COSINE_FRACTION,
+    parameter SPECULAR_BITS        = `PHONG_WEIGHT_BITS + `PHONG_POWER_BITS,
+    parameter SPECULAR_FRACTION    = `PHONG_WEIGHT_FRACTION + `PHONG_POWER_FRACTION,
+    parameter INTENSITY_BITS       = `PHONG_INTENSITY_BITS,
+    parameter INTENSITY_FRACTION   = `PHONG_INTENSITY_FRACTION,
+    parameter COLOUR_BITS          = `PHONG_COLOUR_BITS,
+    parameter LATENCY              = `PHONG_COLOUR_CHANNEL_LATENCY
+) (
+    input  wire                        clk,
+    input  wire                        write_ambient,   // Cp d of material write_address
+    input  wire                        write_diffuse,   // Cp (1 - d)
+    input  wire [   MATERIAL_BITS-1:0] write_address,
+    input  wire [COEFFICIENT_BITS-1:0] write_word,      // u1.16
+    input  wire [   MATERIAL_BITS-1:0] material_early,  // of the pixel one clock later
+    input  wire [     COSINE_BITS-1:0] cosine,          // u0.18, Zn
+    input  wire                        lit,             // 0: ambient only
+    input  wire [   SPECULAR_BITS-1:0] specular,        // u1.35, W(i) cos(s)^n,
+                                                        // PHONG_MULTIPLIER_LATENCY later
+    output wire [     COLOUR_BITS-1:0] colour           // code
+);
+
+  localparam DIFFUSE_BITS = COEFFICIENT_BITS + COSINE_BITS;
+  localparam DIFFUSE_SHIFT = SPECULAR_FRACTION - COEFFICIENT_FRACTION - COSINE_FRACTION;
+  localparam AMBIENT_SHIFT = SPECULAR_FRACTION - COEFFICIENT_FRACTION;
+  localparam SUM_BITS = SPECULAR_FRACTION + 2;  // Cp + W is at most 2
+  localparam WAIT = `PHONG_MULTIPLIER_LATENCY;
+
+  // ---- intensity: products ----
+  wire [COEFFICIENT_BITS-1:0] diffuse;
+  wire [COEFFICIENT_BITS-1:0] ambient;
+  wire [COEFFICIENT_BITS-1:0] ambient_p2;
+  wire [DIFFUSE_BITS-1:0] diffuse_p2;
+  wire lit_p2;
+
+  small_ram #(
+      .ADDRESS_BITS(MATERIAL_BITS),
+      .WORD_BITS(COEFFICIENT_BITS)
+  ) u_diffuse_table (
+      .clk(clk),
+      .write_enable(write_diffuse),
+      .write_address(write_address),
+      .write_word(write_word),
+      .address(material_early),
+      .word(diffuse)
+  );
+
+  small_ram #(
+      .ADDRESS_BITS(MATERIAL_BITS),
+      .WORD_BITS(COEFFICIENT_BITS)
+  ) u_ambient_table (
+      .clk(clk),
+      .write_enable(write_ambient),
+      .write_address(write_address),
+      .write_word(write_word),
+      .address(material_early),
+      .word(ambient)
+  );
+
+  multiplier #(
+      .A_BITS  (COEFFICIENT_BITS),
+      .B_BITS  (COSINE_BITS),
+      .A_SIGNED(0),
+      .B_SIGNED(0)
+  ) u_diffuse (
+      .clk(clk),
+      .a(diffuse),
+      .b(cosine),
+      .product(diffuse_p2)
+  );
+
+  delay #(
+      .BITS  (COEFFICIENT_BITS + 1),
+      .CYCLES(WAIT)
+  ) u_wait (
+      .clk(clk),
+      .in ({ambient, lit}),
+      .out({ambient_p2, lit_p2})
+  );
+
+  // ---- intensity: sum, clamp, cut ----
+  reg [SUM_BITS-1:0] diffuse_sum_p3;
+  reg [SPECULAR_BITS-1:0] specular_p3;
+  reg [SUM_BITS-1:0] sum_p4;
+  reg [INTENSITY_BITS-1:0] intensity_p5;
+
+  wire [SUM_BITS-1:0] ambient_term = {
+    {SUM_BITS - COEFFICIENT_BITS - AMBIENT_SHIFT{1'b0}}, ambient_p2, {AMBIENT_SHIFT{1'b0}}
+  };
+  wire [SUM_BITS-1:0] diffuse_term = {
+    {SUM_BITS - DIFFUSE_BITS - DIFFUSE_SHIFT{1'b0}}, diffuse_p2, {DIFFUSE_SHIFT{1'b0}}
+  };
+
+  always @(posedge clk) begin
+    diffuse_sum_p3 <= ambient_term + (diffuse_term & {SUM_BITS{lit_p2}});
+    specular_p3 <= specular & {SPECULAR_BITS{lit_p2}};
+    sum_p4 <= diffuse_sum_p3 + {{SUM_BITS - SPECULAR_BITS{1'b0}}, specular_p3};
+    intensity_p5 <= |sum_p4[SUM_BITS-1:SPECULAR_FRACTION]
+        ? {{INTENSITY_BITS - INTENSITY_FRACTION - 1{1'b0}}, 1'b1, {INTENSITY_FRACTION{1'b0}}}
+        : sum_p4[SPECULAR_FRACTION-INTENSITY_FRACTION+:INTENSITY_BITS];
+  end
+
+  wire unused_sum = &{1'b0, sum_p4[SPECULAR_FRACTION-INTENSITY_FRACTION-1:0]};
+
+  // ---- code: times 255, rounded ----
+  reg [INTENSITY_BITS+COLOUR_BITS-1:0] scaled_p6;
+  reg [COLOUR_BITS-1:0] colour_p7;
+
+  always @(posedge clk) begin
+    scaled_p6 <= {intensity_p5, {COLOUR_BITS{1'b0}}} - {{COLOUR_BITS{1'b0}}, intensity_p5};
+    colour_p7 <= scaled_p6[INTENSITY_FRACTION+:COLOUR_BITS]
+        + {{COLOUR_BITS - 1{1'b0}}, scaled_p6[INTENSITY_FRACTION-1]};
+  end
+
+  wire unused_scaled = &{1'b0, scaled_p6[INTENSITY_BITS+COLOUR_BITS-1],
+                         scaled_p6[INTENSITY_FRACTION-2:0]};
+
+  assign colour = colour_p7;
+
+endmodule
+
+`default_nettype wire

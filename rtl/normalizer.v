@@ -1,0 +1,240 @@
+// normalizer: an interpolated normal of any length becomes a unit normal -- the paper's "extra
+// hardware to normalize the outputs of the interpolators".
+// The components are shifted together until the largest fills the word, so that a short normal
+// loses no more direction than a long one; then m / |m| with one 1/sqrt and three products.
+// One normal a clock; latency below. The zero vector gives zeros, not lit.
+`default_nettype none
+`include "phong_config.vh"
+`include "latency.vh"
+
+module normalizer #(
+    parameter NORMAL_BITS       = `PHONG_NORMAL_BITS,
+    parameter MANTISSA_BITS     = `PHONG_MANTISSA_BITS,
+    parameter MANTISSA_FRACTION = `PHONG_MANTISSA_FRACTION,
+    parameter OPERAND_BITS      = `PHONG_ROOT_OPERAND_BITS,
+    parameter OPERAND_FRACTION  = `PHONG_ROOT_OPERAND_FRACTION,
+    parameter ROOT_BITS         = `PHONG_ROOT_BITS,
+    parameter ROOT_FRACTION     = `PHONG_ROOT_FRACTION,
+    parameter UNIT_BITS         = `PHONG_UNIT_BITS,
+    parameter UNIT_FRACTION     = `PHONG_UNIT_FRACTION,
+    parameter COSINE_BITS       = `PHONG_COSINE_BITS,
+    parameter COSINE_FRACTION   = `PHONG_COSINE_FRACTION,
+    parameter LATENCY           = `PHONG_NORMALIZER_LATENCY
+) (
+    input  wire                   clk,
+    input  wire                   two_sided,  // 1: shade |Zn|
+    input  wire [NORMAL_BITS-1:0] x,          // s1.30, normal, light frame
+    input  wire [NORMAL_BITS-1:0] y,
+    input  wire [NORMAL_BITS-1:0] z,
+    output wire [  UNIT_BITS-1:0] unit_x,     // s0.17, unit normal
+    output wire [  UNIT_BITS-1:0] unit_y,
+    output wire [  UNIT_BITS-1:0] unit_z,
+    output wire [COSINE_BITS-1:0] cosine,     // u0.18, |Zn| = cos(i)
+    output wire                   lit         // Zn > 0 (two-sided: Zn not 0), exact
+);
+
+  localparam SHIFT_BITS   = $clog2(NORMAL_BITS);
+  localparam SQUARE_BITS  = 2 * MANTISSA_BITS;
+  localparam ONE          = 2 * MANTISSA_FRACTION;  // bit of weight 1 in a square
+  localparam OPERAND_DROP = ONE - OPERAND_FRACTION;
+  localparam PRODUCT_BITS = MANTISSA_BITS + ROOT_BITS;
+  localparam PRODUCT_FRACTION = MANTISSA_FRACTION + ROOT_FRACTION;
+
+  // ---- lit: decided on the interpolated Zn itself ----
+  reg lit_p1;
+
+  always @(posedge clk) lit_p1 <= (z != 0) & (two_sided | ~z[NORMAL_BITS-1]);
+
+  delay #(
+      .BITS  (1),
+      .CYCLES(LATENCY - 1)
+  ) u_lit (
+      .clk(clk),
+      .in (lit_p1),
+      .out(lit)
+  );
+
+  // ---- leading_zeros: of the largest component ----
+  localparam SHIFT_LATENCY = 1 + `PHONG_LEADING_ZEROS_LATENCY;
+
+  reg [NORMAL_BITS-2:0] ones_p1;
+  wire [SHIFT_BITS-1:0] shift_p3;
+
+  always @(posedge clk) begin
+    ones_p1 <= (x[NORMAL_BITS-2:0] ^ {NORMAL_BITS - 1{x[NORMAL_BITS-1]}})
+             | (y[NORMAL_BITS-2:0] ^ {NORMAL_BITS - 1{y[NORMAL_BITS-1]}})
+             | (z[NORMAL_BITS-2:0] ^ {NORMAL_BITS - 1{z[NORMAL_BITS-1]}});
+  end
+
+  leading_zeros #(
+      .BITS(NORMAL_BITS - 1),
+      .COUNT_BITS(SHIFT_BITS)
+  ) u_leading_zeros (
+      .clk  (clk),
+      .word (ones_p1),
+      .count(shift_p3)
+  );
+
+  // ---- align, sum_of_squares, scale, round: the same for the three components ----
+  localparam X = 0, Y = 1, Z = 2;
+
+  wire [SQUARE_BITS-1:0] square_p9[X:Z];
+  wire [ROOT_BITS-1:0] root;
+  wire below_one;
+  wire [UNIT_BITS-1:0] unit[X:Z];
+  wire [PRODUCT_BITS:0] product[X:Z];
+
+  localparam ROOT_WAIT = `PHONG_MULTIPLIER_LATENCY + 2 + 1 + `PHONG_INVERSE_SQRT_LATENCY;
+
+  wire [3*NORMAL_BITS-1:0] xyz = {z, y, x};
+
+  genvar c;
+  generate
+    for (c = X; c <= Z; c = c + 1) begin : gen_component
+      wire [  NORMAL_BITS-1:0] normal_p3;
+      wire [  NORMAL_BITS-1:0] aligned_p5;
+      wire [MANTISSA_BITS-1:0] mantissa_p7;
+      wire [MANTISSA_BITS-1:0] mantissa;
+      wire [ PRODUCT_BITS-1:0] scaled;
+      reg  [   PRODUCT_BITS:0] doubled;
+
+      delay #(
+          .BITS  (NORMAL_BITS),
+          .CYCLES(SHIFT_LATENCY)
+      ) u_normal (
+          .clk(clk),
+          .in (xyz[c*NORMAL_BITS+:NORMAL_BITS]),
+          .out(normal_p3)
+      );
+
+      left_shifter #(
+          .BITS(NORMAL_BITS),
+          .COUNT_BITS(SHIFT_BITS)
+      ) u_align (
+          .clk(clk),
+          .word(normal_p3),
+          .count(shift_p3),
+          .shifted(aligned_p5)
+      );
+
+      round_saturate #(
+          .IN_BITS (NORMAL_BITS),
+          .DROP    (NORMAL_BITS - MANTISSA_BITS),
+          .OUT_BITS(MANTISSA_BITS)
+      ) u_mantissa (
+          .clk(clk),
+          .in (aligned_p5),
+          .out(mantissa_p7)
+      );
+
+      multiplier #(
+          .A_BITS(MANTISSA_BITS),
+          .B_BITS(MANTISSA_BITS)
+      ) u_square (
+          .clk(clk),
+          .a(mantissa_p7),
+          .b(mantissa_p7),
+          .product(square_p9[c])
+      );
+
+      delay #(
+          .BITS  (MANTISSA_BITS),
+          .CYCLES(ROOT_WAIT)
+      ) u_wait (
+          .clk(clk),
+          .in (mantissa_p7),
+          .out(mantissa)
+      );
+
+      multiplier #(
+          .A_BITS  (MANTISSA_BITS),
+          .B_BITS  (ROOT_BITS),
+          .B_SIGNED(0)
+      ) u_scale (
+          .clk(clk),
+          .a(mantissa),
+          .b(root),
+          .product(scaled)
+      );
+
+      always @(posedge clk) begin
+        doubled <= below_one ? {scaled, 1'b0} : {scaled[PRODUCT_BITS-1], scaled};
+      end
+
+      assign product[c] = doubled;
+
+      round_saturate #(
+          .IN_BITS (PRODUCT_BITS + 1),
+          .DROP    (PRODUCT_FRACTION - UNIT_FRACTION),
+          .OUT_BITS(UNIT_BITS)
+      ) u_unit (
+          .clk(clk),
+          .in (doubled),
+          .out(unit[c])
+      );
+    end
+  endgenerate
+
+  assign unit_x = unit[X];
+  assign unit_y = unit[Y];
+  assign unit_z = unit[Z];
+
+  // ---- sum_of_squares ----
+  reg [SQUARE_BITS-1:0] sum_xy_p10;
+  reg [SQUARE_BITS-1:0] square_z_p10;
+  reg [SQUARE_BITS-1:0] sum_p11;
+
+  always @(posedge clk) begin
+    sum_xy_p10 <= square_p9[X] + square_p9[Y];
+    square_z_p10 <= square_p9[Z];
+    sum_p11 <= sum_xy_p10 + square_z_p10;
+  end
+
+  // ---- root_operand: into [1, 4), four times if below 1 ----
+  wire below_one_p11 = ~|sum_p11[SQUARE_BITS-1:ONE];
+
+  reg [OPERAND_BITS-1:0] operand_p12;
+  reg below_one_p12;
+
+  always @(posedge clk) begin
+    operand_p12 <= below_one_p11 ? sum_p11[OPERAND_DROP-2+:OPERAND_BITS]
+                             : sum_p11[OPERAND_DROP+:OPERAND_BITS];
+    below_one_p12 <= below_one_p11;
+  end
+
+  wire unused = &{1'b0, sum_p11[OPERAND_DROP-3:0]};
+
+  inverse_sqrt u_inverse_sqrt (
+      .clk(clk),
+      .operand(operand_p12),
+      .root(root)
+  );
+
+  delay #(
+      .BITS  (1),
+      .CYCLES(`PHONG_INVERSE_SQRT_LATENCY + `PHONG_MULTIPLIER_LATENCY)
+  ) u_below_one (
+      .clk(clk),
+      .in (below_one_p12),
+      .out(below_one)
+  );
+
+  // ---- round: |Zn| with one bit more than the unit normal ----
+  wire negative = product[Z][PRODUCT_BITS];
+  wire [PRODUCT_BITS:0] magnitude = (product[Z] ^ {PRODUCT_BITS + 1{negative}})
+                                  + {{PRODUCT_BITS{1'b0}}, negative};
+
+  round_saturate #(
+      .IN_BITS  (PRODUCT_BITS + 1),
+      .DROP     (PRODUCT_FRACTION - COSINE_FRACTION),
+      .OUT_BITS (COSINE_BITS),
+      .IS_SIGNED(0)
+  ) u_cosine (
+      .clk(clk),
+      .in (magnitude),
+      .out(cosine)
+  );
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,94 @@
+// pixel_fifo: takes the pixels at the end and the back-pressure, so that nothing between needs a
+// stall. A pixel that leaves the interpolators owns a slot: its place on the screen is written at
+// once, its colour LATENCY clocks later, so only one valid bit travels with it. Credits are free
+// slots; there are enough for one pixel a clock.
+`default_nettype none
+`include "phong_config.vh"
+`include "latency.vh"
+
+module pixel_fifo #(
+    parameter COORDINATE_BITS = `PHONG_COORDINATE_BITS,
+    parameter COLOUR_BITS     = `PHONG_COLOUR_BITS,
+    parameter LATENCY         = `PHONG_PIXEL_LATENCY
+) (
+    input wire clk,
+    input wire reset,  // synchronous; drops all pixels
+
+    // a pixel leaves the interpolators
+    output reg                        credit,
+    input  wire                       pixel_valid,  // only with credit
+    input  wire [COORDINATE_BITS-1:0] pixel_x,
+    input  wire [COORDINATE_BITS-1:0] pixel_y,
+    input  wire                       pixel_last,
+
+    // its colour, LATENCY clocks later
+    input wire [COLOUR_BITS-1:0] red,
+    input wire [COLOUR_BITS-1:0] green,
+    input wire [COLOUR_BITS-1:0] blue,
+
+    output reg                                        out_valid,
+    input  wire                                       out_ready,
+    output reg  [2*COORDINATE_BITS+3*COLOUR_BITS-1:0] out_data,   // {y, x, red, green, blue}
+    output reg                                        out_last
+);
+
+  // A slot is taken for LATENCY clocks, and for 1 to be written, 1 to be read, 1 for its credit.
+  localparam SLOTS_NEEDED = LATENCY + 3;
+  localparam SLOTS = 16 * ((SLOTS_NEEDED + 15) / 16);  // small RAMs come in sixteens
+  localparam SLOT_BITS = $clog2(SLOTS);
+  localparam [SLOT_BITS-1:0] LAST_SLOT = SLOTS - 1;
+  localparam COUNT_BITS = $clog2(SLOTS + 1);
+  localparam [COUNT_BITS-1:0] ALL = SLOTS;
+
+  reg [2*COORDINATE_BITS:0] places[0:SLOTS-1];
+  reg [3*COLOUR_BITS-1:0] colours[0:SLOTS-1];
+  reg [SLOT_BITS-1:0] place_slot;
+  reg [SLOT_BITS-1:0] colour_slot;
+  reg [SLOT_BITS-1:0] read_slot;
+  reg [COUNT_BITS-1:0] credits;  // free slots
+  reg [COUNT_BITS-1:0] filled;  // slots with a colour
+
+  // ---- the valid bits of the pipeline ----
+  reg [LATENCY-1:0] in_flight;
+  wire colour_valid = in_flight[LATENCY-1];
+
+  always @(posedge clk) begin
+    if (reset) in_flight <= {LATENCY{1'b0}};
+    else in_flight <= {in_flight[LATENCY-2:0], pixel_valid};
+  end
+
+  // ---- slots ----
+  wire pop = (filled != 0) & (~out_valid | out_ready);
+  wire [COUNT_BITS-1:0] credits_next =
+      credits + {{COUNT_BITS - 1{1'b0}}, pop} - {{COUNT_BITS - 1{1'b0}}, pixel_valid};
+
+  always @(posedge clk) begin
+    if (pixel_valid) places[place_slot] <= {pixel_last, pixel_y, pixel_x};
+    if (colour_valid) colours[colour_slot] <= {red, green, blue};
+    if (pop) begin
+      {out_last, out_data[2*COORDINATE_BITS+3*COLOUR_BITS-1:3*COLOUR_BITS]} <= places[read_slot];
+      out_data[3*COLOUR_BITS-1:0] <= colours[read_slot];
+    end
+
+    if (reset) begin
+      place_slot <= 0;
+      colour_slot <= 0;
+      read_slot <= 0;
+      credits <= ALL;
+      credit <= 1'b0;
+      filled <= 0;
+      out_valid <= 1'b0;
+    end else begin
+      if (pixel_valid) place_slot <= place_slot == LAST_SLOT ? 0 : place_slot + 1'b1;
+      if (colour_valid) colour_slot <= colour_slot == LAST_SLOT ? 0 : colour_slot + 1'b1;
+      if (pop) read_slot <= read_slot == LAST_SLOT ? 0 : read_slot + 1'b1;
+      credits <= credits_next;
+      credit <= credits_next != 0;
+      filled <= filled + {{COUNT_BITS - 1{1'b0}}, colour_valid} - {{COUNT_BITS - 1{1'b0}}, pop};
+      out_valid <= pop | (out_valid & ~out_ready);
+    end
+  end
+
+endmodule
+
+`default_nettype wire

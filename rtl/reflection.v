@@ -1,0 +1,136 @@
+// reflection: 1 - cos(s), the versine of the angle between the reflected ray and the eye.
+// The paper's cos(s) = 2 Zn (N.u) - u_z is a small difference from 1 near a highlight. With the
+// unit vector h = (hx, 0, hz) halfway between light and eye the same quantity is a sum of squares,
+//   1 - cos(s) = 2 ((hz Yn)^2 + (hz Xn - hx Zn)^2),
+// accurate relative to itself, so that cos(s)^n loses little for any n.
+// It is even in N: turning a normal toward the light does not change it.
+// One result a clock; latency below.
+`default_nettype none
+`include "phong_config.vh"
+`include "latency.vh"
+
+module reflection #(
+    parameter UNIT_BITS        = `PHONG_UNIT_BITS,
+    parameter UNIT_FRACTION    = `PHONG_UNIT_FRACTION,
+    parameter HALF_BITS        = `PHONG_HALF_VECTOR_BITS,
+    parameter HALF_FRACTION    = `PHONG_HALF_VECTOR_FRACTION,
+    parameter VERSINE_BITS     = `PHONG_VERSINE_BITS,
+    parameter VERSINE_FRACTION = `PHONG_VERSINE_FRACTION,
+    parameter LATENCY          = `PHONG_REFLECTION_LATENCY
+) (
+    input  wire                    clk,
+    input  wire [   HALF_BITS-1:0] half_x,  // s0.17, held for a frame
+    input  wire [   HALF_BITS-1:0] half_z,
+    input  wire [   UNIT_BITS-1:0] unit_x,  // s0.17, unit normal
+    input  wire [   UNIT_BITS-1:0] unit_y,
+    input  wire [   UNIT_BITS-1:0] unit_z,
+    output wire [VERSINE_BITS-1:0] versine  // u0.22, 1 - cos(s); all ones where cos(s) <= 0
+);
+
+  localparam PRODUCT_BITS = HALF_BITS + UNIT_BITS;
+  localparam SUM_BITS = 2 * UNIT_BITS;
+
+  // ---- across: the parts of the normal across h ----
+  wire [PRODUCT_BITS-1:0] zy_p2, zx_p2, xz_p2;
+
+  multiplier #(
+      .A_BITS(HALF_BITS),
+      .B_BITS(UNIT_BITS)
+  ) u_half_z_unit_y (
+      .clk(clk),
+      .a(half_z),
+      .b(unit_y),
+      .product(zy_p2)
+  );
+
+  multiplier #(
+      .A_BITS(HALF_BITS),
+      .B_BITS(UNIT_BITS)
+  ) u_half_z_unit_x (
+      .clk(clk),
+      .a(half_z),
+      .b(unit_x),
+      .product(zx_p2)
+  );
+
+  multiplier #(
+      .A_BITS(HALF_BITS),
+      .B_BITS(UNIT_BITS)
+  ) u_half_x_unit_z (
+      .clk(clk),
+      .a(half_x),
+      .b(unit_z),
+      .product(xz_p2)
+  );
+
+  reg [PRODUCT_BITS-1:0] across_y_p3;
+  reg [PRODUCT_BITS:0] across_x_p3;
+
+  always @(posedge clk) begin
+    across_y_p3 <= zy_p2;
+    across_x_p3 <= {zx_p2[PRODUCT_BITS-1], zx_p2} - {xz_p2[PRODUCT_BITS-1], xz_p2};
+  end
+
+  wire [UNIT_BITS-1:0] p_p5, q_p5;
+
+  round_saturate #(
+      .IN_BITS (PRODUCT_BITS),
+      .DROP    (HALF_FRACTION),
+      .OUT_BITS(UNIT_BITS)
+  ) u_p (
+      .clk(clk),
+      .in (across_y_p3),
+      .out(p_p5)
+  );
+
+  round_saturate #(
+      .IN_BITS (PRODUCT_BITS + 1),
+      .DROP    (HALF_FRACTION),
+      .OUT_BITS(UNIT_BITS)
+  ) u_q (
+      .clk(clk),
+      .in (across_x_p3),
+      .out(q_p5)
+  );
+
+  // ---- versine: twice the sum of their squares ----
+  wire [SUM_BITS-1:0] pp_p7, qq_p7;
+
+  multiplier #(
+      .A_BITS(UNIT_BITS),
+      .B_BITS(UNIT_BITS)
+  ) u_pp (
+      .clk(clk),
+      .a(p_p5),
+      .b(p_p5),
+      .product(pp_p7)
+  );
+
+  multiplier #(
+      .A_BITS(UNIT_BITS),
+      .B_BITS(UNIT_BITS)
+  ) u_qq (
+      .clk(clk),
+      .a(q_p5),
+      .b(q_p5),
+      .product(qq_p7)
+  );
+
+  reg [SUM_BITS-1:0] sum_p8;
+
+  always @(posedge clk) sum_p8 <= pp_p7 + qq_p7;
+
+  round_saturate #(
+      .IN_BITS  (SUM_BITS),
+      .DROP     (2 * UNIT_FRACTION - 1 - VERSINE_FRACTION),
+      .OUT_BITS (VERSINE_BITS),
+      .IS_SIGNED(0)
+  ) u_versine (
+      .clk(clk),
+      .in (sum_p8),
+      .out(versine)
+  );
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,203 @@
+// shading_unit: the paper's eq. (3) for red, green and blue,
+//   S = Cp [cos(i) (1 - d) + d] + W(i) cos(s)^n = Cp d + Cp (1 - d) cos(i) + W(i) cos(s)^n.
+// The material table holds the products Cp d and Cp (1 - d), which saves a multiplier.
+// One pixel a clock; latency below. Wiring in data order.
+`default_nettype none
+`include "phong_config.vh"
+`include "latency.vh"
+
+module shading_unit #(
+    parameter UNIT_BITS        = `PHONG_UNIT_BITS,
+    parameter COSINE_BITS      = `PHONG_COSINE_BITS,
+    parameter HALF_BITS        = `PHONG_HALF_VECTOR_BITS,
+    parameter MATERIAL_BITS    = `PHONG_MATERIAL_BITS,
+    parameter COEFFICIENT_BITS = `PHONG_COEFFICIENT_BITS,
+    parameter INDEX_BITS       = `PHONG_WEIGHT_INDEX_BITS,
+    parameter EXPONENT_BITS    = `PHONG_EXPONENT_BITS,
+    parameter VERSINE_BITS     = `PHONG_VERSINE_BITS,
+    parameter POWER_BITS       = `PHONG_POWER_BITS,
+    parameter WEIGHT_BITS      = `PHONG_WEIGHT_BITS,
+    parameter COLOUR_BITS      = `PHONG_COLOUR_BITS,
+    parameter LATENCY          = `PHONG_SHADING_UNIT_LATENCY
+) (
+    input wire clk,
+
+    // registers and material table, held for a frame
+    input wire [                HALF_BITS-1:0] half_x,          // s0.17
+    input wire [                HALF_BITS-1:0] half_z,
+    input wire                                 write_weight,
+    input wire                                 write_exponent,
+    input wire [                          2:0] write_ambient,   // blue, green, red
+    input wire [                          2:0] write_diffuse,
+    input wire [MATERIAL_BITS+INDEX_BITS-1:0] write_address,   // {material, interval}
+    input wire [        2*COEFFICIENT_BITS:0] write_word,
+
+    // a pixel
+    input wire [    UNIT_BITS-1:0] unit_x,    // s0.17, unit normal
+    input wire [    UNIT_BITS-1:0] unit_y,
+    input wire [    UNIT_BITS-1:0] unit_z,
+    input wire [  COSINE_BITS-1:0] cosine,    // u0.18, cos(i)
+    input wire                     lit,
+    input wire [MATERIAL_BITS-1:0] material,
+
+    output wire [COLOUR_BITS-1:0] red,  // codes
+    output wire [COLOUR_BITS-1:0] green,
+    output wire [COLOUR_BITS-1:0] blue
+);
+
+  // Clocks from the input to where a thing is needed.
+  localparam POWER_AT = `PHONG_REFLECTION_LATENCY + `PHONG_SPECULAR_POWER_LATENCY;
+  localparam EXPONENT_AT = `PHONG_REFLECTION_LATENCY + `PHONG_LOG_LATENCY;
+  localparam WEIGHT_AT = POWER_AT - `PHONG_SPECULAR_WEIGHT_LATENCY;
+
+  wire [MATERIAL_BITS-1:0] write_material = write_address[INDEX_BITS+:MATERIAL_BITS];
+
+  // ---- cos(s)^n ----
+  wire [VERSINE_BITS-1:0] versine;
+  wire [MATERIAL_BITS-1:0] material_exponent;
+  wire [EXPONENT_BITS-1:0] exponent;
+  wire [POWER_BITS-1:0] power;
+
+  reflection u_reflection (
+      .clk(clk),
+      .half_x(half_x),
+      .half_z(half_z),
+      .unit_x(unit_x),
+      .unit_y(unit_y),
+      .unit_z(unit_z),
+      .versine(versine)
+  );
+
+  delay #(
+      .BITS  (MATERIAL_BITS),
+      .CYCLES(EXPONENT_AT - `PHONG_SMALL_RAM_LATENCY)
+  ) u_material_exponent (
+      .clk(clk),
+      .in (material),
+      .out(material_exponent)
+  );
+
+  small_ram #(
+      .ADDRESS_BITS(MATERIAL_BITS),
+      .WORD_BITS(EXPONENT_BITS)
+  ) u_exponent_table (
+      .clk(clk),
+      .write_enable(write_exponent),
+      .write_address(write_material),
+      .write_word(write_word[EXPONENT_BITS-1:0]),
+      .address(material_exponent),
+      .word(exponent)
+  );
+
+  specular_power u_specular_power (
+      .clk(clk),
+      .versine(versine),
+      .exponent(exponent),
+      .power(power)
+  );
+
+  // ---- W(i) ----
+  wire [MATERIAL_BITS-1:0] material_weight;
+  wire [COSINE_BITS-1:0] cosine_weight;
+  wire [WEIGHT_BITS-1:0] weight;
+
+  delay #(
+      .BITS  (MATERIAL_BITS),
+      .CYCLES(WEIGHT_AT - EXPONENT_AT + `PHONG_SMALL_RAM_LATENCY)
+  ) u_material_weight (
+      .clk(clk),
+      .in (material_exponent),
+      .out(material_weight)
+  );
+
+  delay #(
+      .BITS  (COSINE_BITS),
+      .CYCLES(WEIGHT_AT)
+  ) u_cosine_weight (
+      .clk(clk),
+      .in (cosine),
+      .out(cosine_weight)
+  );
+
+  specular_weight u_specular_weight (
+      .clk(clk),
+      .write_enable(write_weight),
+      .write_address(write_address),
+      .write_word(write_word),
+      .material(material_weight),
+      .cosine(cosine_weight),
+      .weight(weight)
+  );
+
+  // ---- W(i) cos(s)^n ----
+  wire [WEIGHT_BITS+POWER_BITS-1:0] specular;
+
+  multiplier #(
+      .A_BITS  (WEIGHT_BITS),
+      .B_BITS  (POWER_BITS),
+      .A_SIGNED(0),
+      .B_SIGNED(0)
+  ) u_specular (
+      .clk(clk),
+      .a(weight),
+      .b(power),
+      .product(specular)
+  );
+
+  // ---- red, green, blue ----
+  wire [MATERIAL_BITS-1:0] material_early;
+  wire [COSINE_BITS-1:0] cosine_power;
+  wire lit_power;
+
+  delay #(
+      .BITS  (MATERIAL_BITS),
+      .CYCLES(`PHONG_SPECULAR_WEIGHT_LATENCY - `PHONG_SMALL_RAM_LATENCY)
+  ) u_material_early (
+      .clk(clk),
+      .in (material_weight),
+      .out(material_early)
+  );
+
+  delay #(
+      .BITS  (COSINE_BITS),
+      .CYCLES(`PHONG_SPECULAR_WEIGHT_LATENCY)
+  ) u_cosine_power (
+      .clk(clk),
+      .in (cosine_weight),
+      .out(cosine_power)
+  );
+
+  delay #(
+      .BITS  (1),
+      .CYCLES(POWER_AT)
+  ) u_lit_power (
+      .clk(clk),
+      .in (lit),
+      .out(lit_power)
+  );
+
+  wire [3*COLOUR_BITS-1:0] colour;
+
+  genvar c;
+  generate
+    for (c = 0; c < 3; c = c + 1) begin : gen_channel
+      colour_channel u_channel (
+          .clk(clk),
+          .write_ambient(write_ambient[c]),
+          .write_diffuse(write_diffuse[c]),
+          .write_address(write_material),
+          .write_word(write_word[COEFFICIENT_BITS-1:0]),
+          .material_early(material_early),
+          .cosine(cosine_power),
+          .lit(lit_power),
+          .specular(specular),
+          .colour(colour[c*COLOUR_BITS+:COLOUR_BITS])
+      );
+    end
+  endgenerate
+
+  assign {blue, green, red} = colour;
+
+endmodule
+
+`default_nettype wire

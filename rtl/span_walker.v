@@ -1,0 +1,76 @@
+// span_walker: spans become pixels, left to right; it starts and steps the interpolators.
+// A pixel a clock as long as there is credit, and no bubble between spans, also of one pixel.
+// Latency 1: a span accepted now has its first pixel at the outputs in the next clock.
+`default_nettype none
+`include "phong_config.vh"
+
+module span_walker #(
+    parameter COORDINATE_BITS = `PHONG_COORDINATE_BITS,
+    parameter MATERIAL_BITS   = `PHONG_MATERIAL_BITS
+) (
+    input wire clk,
+    input wire reset,  // synchronous; drops the span at work
+
+    // span, with the normal's start and step at the interpolators
+    input  wire                       span_valid,
+    output wire                       span_ready,
+    input  wire [COORDINATE_BITS-1:0] span_x,         // pixels, first pixel
+    input  wire [COORDINATE_BITS-1:0] span_y,
+    input  wire [  COORDINATE_BITS:0] span_length,    // pixels, 1 or more
+    input  wire [  MATERIAL_BITS-1:0] span_material,
+    input  wire                       span_last,      // last span of the frame
+
+    // interpolators
+    output wire load,      // take start and step
+    output wire advance,   // add step
+    input  wire overflow,  // a component has left its word since load
+
+    // pixel, at the time of the interpolators' values
+    input  wire                       credit,  // a pixel may leave
+    output wire                       pixel_valid,
+    output reg  [COORDINATE_BITS-1:0] pixel_x,
+    output reg  [COORDINATE_BITS-1:0] pixel_y,
+    output reg  [  MATERIAL_BITS-1:0] pixel_material,
+    output wire                       pixel_last,  // last pixel of the frame
+
+    output reg illegal_span  // for one clock: a span was empty, left its word or the counter
+);
+
+  reg busy;
+  reg at_end;  // the pixel at the outputs is the last of its span
+  reg [COORDINATE_BITS:0] remaining;  // pixels of the span after this one
+  reg last;
+  reg illegal;
+
+  assign pixel_valid = busy & credit;
+  assign pixel_last = last & at_end;
+  assign span_ready = ~busy | (credit & at_end);
+  assign load = span_valid & span_ready;
+  assign advance = pixel_valid & ~at_end;
+
+  always @(posedge clk) begin
+    if (load) begin
+      pixel_x <= span_x;
+      pixel_y <= span_y;
+      pixel_material <= span_material;
+      last <= span_last;
+      remaining <= span_length - 1'b1;
+      at_end <= span_length[COORDINATE_BITS:1] == 0;
+      illegal <= span_length == 0;
+    end else if (advance) begin
+      pixel_x <= pixel_x + 1'b1;
+      remaining <= remaining - 1'b1;
+      at_end <= remaining == 1;
+      illegal <= illegal | (&pixel_x);
+    end
+
+    if (reset) busy <= 1'b0;
+    else if (load) busy <= 1'b1;
+    else if (pixel_valid & at_end) busy <= 1'b0;
+
+    illegal_span <= ~reset & pixel_valid & at_end & (illegal | overflow);
+  end
+
+endmodule
+
+`default_nettype wire

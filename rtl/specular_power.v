@@ -1,0 +1,355 @@
+// specular_power: cos(s)^n = 2^(-n * -log2(1 - v)), v = 1 - cos(s).
+// Both the logarithm and the exponential are tables of straight lines; n may be fractional.
+// n = 1 bypasses them: cos(s) itself, rounded.
+// One result a clock; latency below.
+`default_nettype none
+`include "phong_config.vh"
+`include "latency.vh"
+
+module specular_power #(
+    parameter VERSINE_BITS      = `PHONG_VERSINE_BITS,
+    parameter VERSINE_FRACTION  = `PHONG_VERSINE_FRACTION,
+    parameter LOG_INDEX_BITS    = `PHONG_LOG_INDEX_BITS,
+    parameter LOG_VALUE_BITS    = `PHONG_LOG_VALUE_BITS,     // all of them fraction
+    parameter LOG_SLOPE_BITS    = `PHONG_LOG_SLOPE_BITS,
+    parameter LOG_MANTISSA_BITS = `PHONG_LOG_MANTISSA_BITS,
+    parameter EXPONENT_BITS     = `PHONG_EXPONENT_BITS,
+    parameter EXPONENT_FRACTION = `PHONG_EXPONENT_FRACTION,
+    parameter LOG_BITS          = `PHONG_POWER_LOG_BITS,
+    parameter LOG_FRACTION      = `PHONG_POWER_LOG_FRACTION,
+    parameter EXP_INDEX_BITS    = `PHONG_EXP_INDEX_BITS,
+    parameter EXP_VALUE_BITS    = `PHONG_EXP_VALUE_BITS,     // all of them fraction
+    parameter EXP_SLOPE_BITS    = `PHONG_EXP_SLOPE_BITS,
+    parameter POWER_BITS        = `PHONG_POWER_BITS,         // all of them fraction
+    parameter LATENCY           = `PHONG_SPECULAR_POWER_LATENCY
+) (
+    input  wire                     clk,
+    input  wire [ VERSINE_BITS-1:0] versine,   // u0.22, 1 - cos(s)
+    input  wire [EXPONENT_BITS-1:0] exponent,  // u8.9, n, EXPONENT_LATENCY clocks after versine
+    output wire [   POWER_BITS-1:0] power      // u0.18, cos(s)^n
+);
+
+  localparam EXPONENT_LATENCY = `PHONG_LOG_LATENCY;
+
+  // ---- leading_ones: cos(s) = 2^-e (1 - t), 0 <= t < 1/2 ----
+  localparam E_BITS = $clog2(VERSINE_BITS + 1);
+
+  wire [E_BITS-1:0] e_p2;
+  wire [VERSINE_BITS-1:0] versine_p2;
+  wire [VERSINE_BITS-1:0] t_p4;
+
+  leading_zeros #(
+      .BITS(VERSINE_BITS),
+      .COUNT_BITS(E_BITS)
+  ) u_leading_ones (
+      .clk  (clk),
+      .word (~versine),
+      .count(e_p2)
+  );
+
+  delay #(
+      .BITS  (VERSINE_BITS),
+      .CYCLES(`PHONG_LEADING_ZEROS_LATENCY)
+  ) u_versine (
+      .clk(clk),
+      .in (versine),
+      .out(versine_p2)
+  );
+
+  left_shifter #(
+      .BITS(VERSINE_BITS),
+      .COUNT_BITS(E_BITS)
+  ) u_t (
+      .clk(clk),
+      .word(versine_p2),
+      .count(e_p2),
+      .shifted(t_p4)
+  );
+
+  // ---- log_lookup ----
+  localparam LOG_OFFSET_BITS = VERSINE_BITS - 1 - LOG_INDEX_BITS;
+
+  wire [LOG_VALUE_BITS-1:0] log_value_p6;
+  wire [LOG_SLOPE_BITS-1:0] log_slope_p6;
+  wire [LOG_OFFSET_BITS-1:0] log_offset_p6;
+
+  rom #(
+      .ADDRESS_BITS(LOG_INDEX_BITS),
+      .WORD_BITS(LOG_VALUE_BITS + LOG_SLOPE_BITS),
+      .CONTENTS(`PHONG_LOG_TABLE)
+  ) u_log_table (
+      .clk(clk),
+      .address(t_p4[VERSINE_BITS-2-:LOG_INDEX_BITS]),
+      .word({log_value_p6, log_slope_p6})
+  );
+
+  delay #(
+      .BITS  (LOG_OFFSET_BITS),
+      .CYCLES(`PHONG_ROM_LATENCY)
+  ) u_log_offset (
+      .clk(clk),
+      .in (t_p4[LOG_OFFSET_BITS-1:0]),
+      .out(log_offset_p6)
+  );
+
+  wire unused_t = &{1'b0, t_p4[VERSINE_BITS-1]};  // t < 1/2
+
+  // ---- log_refine: g = -log2(cos s) = e + value + slope * offset ----
+  localparam G_BITS = E_BITS + LOG_VALUE_BITS;
+
+  wire [LOG_SLOPE_BITS+LOG_OFFSET_BITS-1:0] log_rise_p8;
+  wire [LOG_VALUE_BITS-1:0] log_value_p8;
+  wire [E_BITS-1:0] e_p8;
+  reg [G_BITS-1:0] g_p9;
+
+  multiplier #(
+      .A_BITS  (LOG_SLOPE_BITS),
+      .B_BITS  (LOG_OFFSET_BITS),
+      .A_SIGNED(0),
+      .B_SIGNED(0)
+  ) u_log_slope (
+      .clk(clk),
+      .a(log_slope_p6),
+      .b(log_offset_p6),
+      .product(log_rise_p8)
+  );
+
+  delay #(
+      .BITS  (LOG_VALUE_BITS),
+      .CYCLES(`PHONG_MULTIPLIER_LATENCY)
+  ) u_log_value (
+      .clk(clk),
+      .in (log_value_p6),
+      .out(log_value_p8)
+  );
+
+  delay #(
+      .BITS  (E_BITS),
+      .CYCLES(`PHONG_LEFT_SHIFTER_LATENCY + `PHONG_ROM_LATENCY + `PHONG_MULTIPLIER_LATENCY)
+  ) u_e (
+      .clk(clk),
+      .in (e_p2),
+      .out(e_p8)
+  );
+
+  always @(posedge clk) begin
+    g_p9 <= {e_p8, log_value_p8} + {{G_BITS - LOG_SLOPE_BITS{1'b0}},
+                                    log_rise_p8[LOG_SLOPE_BITS+LOG_OFFSET_BITS-1:LOG_OFFSET_BITS]};
+  end
+
+  wire unused_rise = &{1'b0, log_rise_p8[LOG_OFFSET_BITS-1:0]};
+
+  // ---- log_normalize: the bits of g below its leading zeros, at most MOST of them dropped ----
+  localparam MOST = G_BITS - LOG_MANTISSA_BITS;
+  localparam K_BITS = $clog2(MOST + 1);
+
+  wire [K_BITS-1:0] k_p11;
+  wire [G_BITS-1:0] g_p11;
+  wire [G_BITS-1:0] mantissa_p13;
+
+  leading_zeros #(
+      .BITS(MOST),
+      .COUNT_BITS(K_BITS)
+  ) u_log_zeros (
+      .clk  (clk),
+      .word (g_p9[G_BITS-1-:MOST]),
+      .count(k_p11)
+  );
+
+  delay #(
+      .BITS  (G_BITS),
+      .CYCLES(`PHONG_LEADING_ZEROS_LATENCY)
+  ) u_g (
+      .clk(clk),
+      .in (g_p9),
+      .out(g_p11)
+  );
+
+  left_shifter #(
+      .BITS(G_BITS),
+      .COUNT_BITS(K_BITS)
+  ) u_log_mantissa (
+      .clk(clk),
+      .word(g_p11),
+      .count(k_p11),
+      .shifted(mantissa_p13)
+  );
+
+  wire unused_mantissa = &{1'b0, mantissa_p13[MOST-1:0]};
+
+  // ---- times_exponent: x = n * g, saturated where the power vanishes ----
+  localparam N_BITS = LOG_MANTISSA_BITS + EXPONENT_BITS;
+  localparam N_DROP = LOG_VALUE_BITS + EXPONENT_FRACTION - LOG_FRACTION - MOST;
+  localparam WIDE_BITS = N_BITS - N_DROP;
+
+  wire [N_BITS-1:0] product_p15;
+  wire [K_BITS-1:0] k_p15;
+  reg [WIDE_BITS-1:0] coarse_p16;
+  reg [1:0] fine_p16;
+  reg [WIDE_BITS-1:0] wide_p17;
+  reg [LOG_BITS-1:0] x_p18;
+
+  multiplier #(
+      .A_BITS  (LOG_MANTISSA_BITS),
+      .B_BITS  (EXPONENT_BITS),
+      .A_SIGNED(0),
+      .B_SIGNED(0)
+  ) u_times_exponent (
+      .clk(clk),
+      .a(mantissa_p13[G_BITS-1-:LOG_MANTISSA_BITS]),
+      .b(exponent),
+      .product(product_p15)
+  );
+
+  delay #(
+      .BITS  (K_BITS),
+      .CYCLES(`PHONG_LEFT_SHIFTER_LATENCY + `PHONG_MULTIPLIER_LATENCY)
+  ) u_k (
+      .clk(clk),
+      .in (k_p11),
+      .out(k_p15)
+  );
+
+  always @(posedge clk) begin
+    coarse_p16 <= product_p15[N_BITS-1:N_DROP] >> {k_p15[K_BITS-1:2], 2'b00};
+    fine_p16 <= k_p15[1:0];
+    wide_p17 <= coarse_p16 >> fine_p16;
+    x_p18 <= wide_p17[LOG_BITS-1:0] | {LOG_BITS{|wide_p17[WIDE_BITS-1:LOG_BITS]}};
+  end
+
+  wire unused_product = &{1'b0, product_p15[N_DROP-1:0]};
+
+  // ---- exp_lookup ----
+  localparam EXP_OFFSET_BITS = LOG_FRACTION - EXP_INDEX_BITS;
+  localparam WHOLE_BITS = LOG_BITS - LOG_FRACTION;
+
+  wire [EXP_VALUE_BITS-1:0] exp_value_p20;
+  wire [EXP_SLOPE_BITS-1:0] exp_slope_p20;
+  wire [EXP_OFFSET_BITS-1:0] exp_offset_p20;
+
+  rom #(
+      .ADDRESS_BITS(EXP_INDEX_BITS),
+      .WORD_BITS(EXP_VALUE_BITS + EXP_SLOPE_BITS),
+      .CONTENTS(`PHONG_EXP_TABLE)
+  ) u_exp_table (
+      .clk(clk),
+      .address(x_p18[LOG_FRACTION-1-:EXP_INDEX_BITS]),
+      .word({exp_value_p20, exp_slope_p20})
+  );
+
+  delay #(
+      .BITS  (EXP_OFFSET_BITS),
+      .CYCLES(`PHONG_ROM_LATENCY)
+  ) u_exp_offset (
+      .clk(clk),
+      .in (x_p18[EXP_OFFSET_BITS-1:0]),
+      .out(exp_offset_p20)
+  );
+
+  // ---- exp_refine: value - slope * offset ----
+  wire [EXP_SLOPE_BITS+EXP_OFFSET_BITS-1:0] exp_fall_p23;
+  wire [EXP_VALUE_BITS-1:0] exp_value_p23;
+  wire [WHOLE_BITS-1:0] whole_p24;
+  reg [EXP_VALUE_BITS-1:0] line_p24;
+
+  narrow_multiplier #(
+      .A_BITS(EXP_SLOPE_BITS),
+      .B_BITS(EXP_OFFSET_BITS)
+  ) u_exp_slope (
+      .clk(clk),
+      .a(exp_slope_p20),
+      .b(exp_offset_p20),
+      .product(exp_fall_p23)
+  );
+
+  delay #(
+      .BITS  (EXP_VALUE_BITS),
+      .CYCLES(`PHONG_NARROW_MULTIPLIER_LATENCY)
+  ) u_exp_value (
+      .clk(clk),
+      .in (exp_value_p20),
+      .out(exp_value_p23)
+  );
+
+  delay #(
+      .BITS  (WHOLE_BITS),
+      .CYCLES(`PHONG_ROM_LATENCY + `PHONG_NARROW_MULTIPLIER_LATENCY + 1)
+  ) u_whole (
+      .clk(clk),
+      .in (x_p18[LOG_BITS-1:LOG_FRACTION]),
+      .out(whole_p24)
+  );
+
+  always @(posedge clk) begin
+    line_p24 <= exp_value_p23 - {{EXP_VALUE_BITS - EXP_SLOPE_BITS{1'b0}},
+        exp_fall_p23[EXP_SLOPE_BITS+EXP_OFFSET_BITS-1:EXP_OFFSET_BITS]};
+  end
+
+  wire unused_fall = &{1'b0, exp_fall_p23[EXP_OFFSET_BITS-1:0]};
+
+  // ---- exp_shift: by the whole part, then rounded ----
+  reg [EXP_VALUE_BITS-1:0] coarse_p25;
+  reg [1:0] fine_p25;
+  reg [EXP_VALUE_BITS-1:0] shifted_p26;
+  wire [POWER_BITS-1:0] power_p28;
+
+  always @(posedge clk) begin
+    coarse_p25 <= line_p24 >> {whole_p24[WHOLE_BITS-1:2], 2'b00};
+    fine_p25 <= whole_p24[1:0];
+    shifted_p26 <= coarse_p25 >> fine_p25;
+  end
+
+  round_saturate #(
+      .IN_BITS  (EXP_VALUE_BITS),
+      .DROP     (EXP_VALUE_BITS - POWER_BITS),
+      .OUT_BITS (POWER_BITS),
+      .IS_SIGNED(0)
+  ) u_power (
+      .clk(clk),
+      .in (shifted_p26),
+      .out(power_p28)
+  );
+
+  // ---- bypass: n = 1 ----
+  wire [POWER_BITS-1:0] cosine_p28;
+  wire bypass_p28;
+  reg [POWER_BITS-1:0] result_p29;
+  wire [POWER_BITS-1:0] cosine_s;
+
+  round_saturate #(
+      .IN_BITS  (VERSINE_BITS + 1),
+      .DROP     (VERSINE_FRACTION - POWER_BITS),
+      .OUT_BITS (POWER_BITS),
+      .IS_SIGNED(0)
+  ) u_cosine (
+      .clk(clk),
+      .in ({1'b1, {VERSINE_FRACTION{1'b0}}} - {1'b0, versine}),
+      .out(cosine_s)
+  );
+
+  delay #(
+      .BITS  (POWER_BITS),
+      .CYCLES(LATENCY - `PHONG_ROUND_SATURATE_LATENCY - 1)
+  ) u_cosine_wait (
+      .clk(clk),
+      .in (cosine_s),
+      .out(cosine_p28)
+  );
+
+  delay #(
+      .BITS  (1),
+      .CYCLES(LATENCY - EXPONENT_LATENCY - 1)
+  ) u_bypass (
+      .clk(clk),
+      .in (exponent == {{EXPONENT_BITS - EXPONENT_FRACTION - 1{1'b0}}, 1'b1,
+                        {EXPONENT_FRACTION{1'b0}}}),
+      .out(bypass_p28)
+  );
+
+  always @(posedge clk) result_p29 <= bypass_p28 ? cosine_p28 : power_p28;
+
+  assign power = result_p29;
+
+endmodule
+
+`default_nettype wire

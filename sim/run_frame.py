@@ -1,0 +1,146 @@
+"""Whole frames through the RTL, from outside the simulator."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from model.config import DEFAULT, Config
+from model.frame import Frame
+from model.registers import writes
+from model.spans import write_spans
+from model.twin import Pixels
+from sim.build import BUILD, Bench
+
+
+class SimulationError(Exception):
+    """The simulator did not come to its end; the message holds the end of its log."""
+
+
+@dataclass
+class SimResult:
+    """What a frame did in simulation; cycles as counted there (see sim/frame_bench.v).
+
+    pixels: as they came. cycles: clocks from the first span accepted to the last pixel taken.
+    latency_cycles: to the first pixel offered. stall_cycles: of `cycles`, those in which no pixel
+    left the interpolators before the last had. extra_pixels: pixels after the last.
+    build_s, simulate_s: seconds.
+    """
+
+    pixels: Pixels
+    complete: bool
+    cycles: int
+    latency_cycles: int
+    stall_cycles: int
+    illegal_spans: int
+    extra_pixels: int
+    build_s: float
+    simulate_s: float
+
+
+@dataclass
+class Job:
+    """A frame to run, and under which conditions (see `FrameTB.run`).
+
+    spans_path: its file if there is one already. reset_first: reset before it.
+    """
+
+    frame: Frame
+    spans_path: Path | None = None
+    idle: int = 0
+    stall: int = 0
+    seed: int = 1
+    stop_after: int = 0
+    reset_first: bool = False
+
+
+def read_pixels(path: Path, config: Config) -> Pixels:
+    """The pixels of a file that the bench wrote: 64-bit words {last, y, x, red, green, blue}."""
+    words = np.fromfile(path, dtype="<u8")
+    colour, place = config.colour_bits, config.coordinate_bits
+
+    def field(lsb, bits):
+        return ((words >> np.uint64(lsb)) & np.uint64((1 << bits) - 1)).astype(np.int64)
+
+    rgb = np.stack([field(k * colour, colour) for k in (2, 1, 0)], axis=1)
+    x, y = field(3 * colour, place), field(3 * colour + place, place)
+    return Pixels(x, y, rgb, field(3 * colour + 2 * place, 1).astype(bool))
+
+
+def _body_offset(path: Path) -> int:
+    """Where the records of a span file start: after its second line."""
+    with open(path, "rb") as file:
+        file.readline()
+        file.readline()
+        return file.tell()
+
+
+def simulate_jobs(jobs: list[Job], config: Config = DEFAULT, bench: Bench | None = None):
+    """Run `jobs` one after the other in one simulation. Returns a list of SimResult.
+
+    Raises BuildError, SimulationError.
+    """
+    bench = bench or Bench("frame_bench", config)
+    begin = time.perf_counter()
+    bench.make()
+    build_s = time.perf_counter() - begin
+    (BUILD / "run").mkdir(parents=True, exist_ok=True)
+    folder = Path(tempfile.mkdtemp(dir=BUILD / "run"))
+    try:
+        described = []
+        for k, job in enumerate(jobs):
+            path = folder / f"{k}.spans"
+            if job.spans_path is None:
+                write_spans(path, job.frame, config)
+            else:
+                path.symlink_to(job.spans_path.resolve())
+            described.append({
+                "job": k, "skip": _body_offset(path), "spans": len(job.frame.spans),
+                "pixels": int(np.maximum(job.frame.spans["length"], 1).sum()),
+                "idle": job.idle, "stall": job.stall, "seed": job.seed,
+                "stop_after": job.stop_after, "reset_first": job.reset_first,
+                "writes": writes(job.frame, config),
+            })  # fmt: skip
+        (folder / "jobs.json").write_text(json.dumps(described))
+        try:
+            bench.run(
+                "sim.frame_jobs", folder, plusargs=[f"+dir={folder}"],
+                extra_env={"PHONG_JOBS": str(folder)},
+            )  # fmt: skip
+            said = json.loads((folder / "counters.json").read_text())
+        except (OSError, RuntimeError, SystemExit) as error:
+            log = folder / "sim.log"
+            tail = log.read_text()[-3000:] if log.is_file() else ""
+            raise SimulationError(f"the simulation failed ({error}):\n{tail}") from error
+        results = []
+        for k, c in enumerate(said):
+            results.append(
+                SimResult(
+                    read_pixels(folder / f"{k}.pixels", config), bool(c["complete"]), c["cycles"],
+                    c["latency"], c["stall_cycles"], c["illegal_spans"],
+                    c.get("extra_pixels", 0), build_s, c["seconds"],
+                )
+            )  # fmt: skip
+        return results
+    finally:
+        if "PHONG_KEEP" not in os.environ:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def simulate(
+    spans_path, frame: Frame, config: Config = DEFAULT,
+    progress: Callable[[float], None] | None = None,
+) -> SimResult:  # fmt: skip
+    """Run one frame whose span file is `spans_path`."""
+    result = simulate_jobs([Job(frame, Path(spans_path))], config)[0]
+    if progress:
+        progress(1.0)
+    return result
