@@ -118,7 +118,8 @@ class Bench(Verilator):
         rtl: Path = RTL,
         trace: bool = False,
     ):
-        """A bench with top level `top`: sim/<top>.v, or a text in `sources` (file name: text).
+        """A bench with top level `top`: sim/<top>.v, a module of the design, or a text in
+        `sources` (file name: text).
 
         rtl: folder of the design (a mutated copy, say). trace: able to write a VCD.
         """
@@ -179,8 +180,9 @@ class Bench(Verilator):
         return self.folder
 
     def _source(self) -> Path:
-        inside = self.folder / f"{self._top}.v"
-        return inside if f"{self._top}.v" in self._texts else SIM / f"{self._top}.v"
+        name = f"{self._top}.v"
+        folders = [self.folder] if name in self._texts else [SIM, self._rtl]
+        return next(f / name for f in folders if (f / name).is_file())
 
     def run(self, test_module: str, folder: Path, **arguments) -> Path:
         """Run cocotb tests in `folder` (scratch). Arguments as for `Runner.test`.

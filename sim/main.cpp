@@ -4,11 +4,12 @@
 // cocotb, so that whole frames run at the speed of a bare C++ loop. Otherwise cocotb is in charge
 // as with its own main program. Time stands still meanwhile. A trace turns the fast way off.
 //
-// Options: --bare        no cocotb at all: start, run while `running`, report (for `make bench`)
-//          --trace FILE  write a VCD (in builds with a trace)
+// Options: --trace FILE   write a VCD (in builds with a trace)
+//          --bare WRITES  no cocotb at all (for `make bench`): do the register writes in the file
+//                         WRITES (address and word in hexadecimal, one a line), then one job
 
-#include <algorithm>
 #include <chrono>
+#include <cinttypes>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -23,23 +24,64 @@
 
 extern "C" void vlog_startup_routines_bootstrap(void);
 
-static uint64_t fast_clocks = 0;
-static double fast_seconds = 0;
+template <class Top>
+static void clock(Top &top) {
+    top.clk = 0;
+    top.eval();
+    top.clk = 1;
+    top.eval();
+}
+
+// Whether the design asks for the fast way; designs without the output never do.
+template <class Top>
+static bool running(const Top &top) {
+    if constexpr (requires { top.running; }) {
+        return top.running && top.clk;
+    } else {
+        return false;
+    }
+}
 
 // Clock the design until it stops running. Enters and leaves with clk = 1.
-static void run_fast(Vtop &top) {
+template <class Top>
+static void run_fast(Top &top) {
     const auto begin = std::chrono::steady_clock::now();
     uint64_t clocks = 0;
     do {
-        top.clk = 0;
-        top.eval();
-        top.clk = 1;
-        top.eval();
+        clock(top);
         ++clocks;
-    } while (top.running && !Verilated::gotFinish());
-    fast_clocks += clocks;
-    fast_seconds +=
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    } while (running(top) && !Verilated::gotFinish());
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    std::printf("clocks %" PRIu64 " seconds %.6f\n", clocks, seconds.count());
+}
+
+// Without cocotb: registers, one job, no callbacks.
+template <class Top>
+static int run_bare(Top &top, const char *writes) {
+    if constexpr (requires { top.autostart; }) {
+        std::FILE *file = std::fopen(writes, "r");
+        if (!file) return 2;
+        top.reset = 1;
+        clock(top);
+        top.reset = 0;
+        uint64_t address, word;
+        top.write_enable = 1;
+        while (std::fscanf(file, "%" SCNx64 " %" SCNx64, &address, &word) == 2) {
+            top.write_address = address;
+            top.write_word = word;
+            clock(top);
+        }
+        std::fclose(file);
+        top.write_enable = 0;
+        top.autostart = 1;
+        clock(top);
+        top.autostart = 0;
+        run_fast(top);
+        top.final();
+        return top.complete ? 0 : 1;
+    } else {
+        return 2;  // not a bench of frames
+    }
 }
 
 static void value_callbacks() {
@@ -47,6 +89,7 @@ static void value_callbacks() {
     }
 }
 
+// One time step, as cocotb's own main program does it.
 static void settle(Vtop &top) {
     do {
         do {
@@ -63,70 +106,53 @@ static void settle(Vtop &top) {
     VerilatedVpi::callCbs(cbReadOnlySynch);
 }
 
-static int run_bare(Vtop &top) {
-    for (top.autostart = 1; !top.running;) {
-        top.clk = 0;
-        top.eval();
-        top.clk = 1;
-        top.eval();
+static void run_cocotb(Vtop &top, const char *trace_file) {
+#if VM_TRACE
+    VerilatedVcdC trace;
+    Verilated::traceEverOn(true);
+    if (trace_file) {
+        top.trace(&trace, 99);
+        trace.open(trace_file);
     }
-    run_fast(top);
+#endif
+    vlog_startup_routines_bootstrap();
+    VerilatedVpi::callCbs(cbStartOfSimulation);
+    value_callbacks();
+    while (!Verilated::gotFinish()) {
+        settle(top);
+#if VM_TRACE
+        if (trace_file) trace.dump(top.contextp()->time());
+#endif
+        if (running(top) && !trace_file) {
+            run_fast(top);
+            settle(top);
+        }
+        const uint64_t next = VerilatedVpi::cbNextDeadline();
+        if (next == ~uint64_t{0}) break;  // nobody waits for anything
+        top.contextp()->time(next);
+        VerilatedVpi::callCbs(cbNextSimTime);
+        value_callbacks();
+        VerilatedVpi::callTimedCbs();
+        value_callbacks();
+    }
     top.final();
-    return 0;
+    VerilatedVpi::callCbs(cbEndOfSimulation);
+#if VM_TRACE
+    if (trace_file) trace.close();
+#endif
 }
 
 int main(int argc, char **argv) {
-    bool bare = false;
+    const char *writes = nullptr;
     const char *trace_file = nullptr;
-    for (int i = 1; i < argc; ++i) {
-        if (!std::strcmp(argv[i], "--bare")) bare = true;
-        if (!std::strcmp(argv[i], "--trace") && i + 1 < argc) trace_file = argv[++i];
+    for (int i = 1; i + 1 < argc; ++i) {
+        if (!std::strcmp(argv[i], "--bare")) writes = argv[++i];
+        else if (!std::strcmp(argv[i], "--trace")) trace_file = argv[++i];
     }
     Verilated::commandArgs(argc, argv);
     Verilated::fatalOnVpiError(false);
-    std::unique_ptr<Vtop> top(new Vtop(""));
-
-    int status = 0;
-    if (bare) {
-        status = run_bare(*top);
-    } else {
-#if VM_TRACE
-        VerilatedVcdC trace;
-        Verilated::traceEverOn(true);
-        if (trace_file) {
-            top->trace(&trace, 99);
-            trace.open(trace_file);
-        }
-#endif
-        vlog_startup_routines_bootstrap();
-        VerilatedVpi::callCbs(cbStartOfSimulation);
-        value_callbacks();
-        while (!Verilated::gotFinish()) {
-            settle(*top);
-#if VM_TRACE
-            if (trace_file) trace.dump(top->contextp()->time());
-#endif
-            if (top->running && top->clk && !trace_file) {
-                run_fast(*top);
-                settle(*top);
-            }
-            const uint64_t next = VerilatedVpi::cbNextDeadline();
-            if (next == ~uint64_t{0}) break;
-            top->contextp()->time(next);
-            VerilatedVpi::callCbs(cbNextSimTime);
-            value_callbacks();
-            VerilatedVpi::callTimedCbs();
-            value_callbacks();
-        }
-        top->final();
-        VerilatedVpi::callCbs(cbEndOfSimulation);
-#if VM_TRACE
-        if (trace_file) trace.close();
-#endif
-    }
-    if (fast_clocks) {
-        std::printf("clocks %llu seconds %.6f\n", static_cast<unsigned long long>(fast_clocks),
-                    fast_seconds);
-    }
-    return Verilated::threadContextp()->errorCount() > 0 ? 1 : status;
+    const std::unique_ptr<Vtop> top(new Vtop(""));
+    if (writes) return run_bare(*top, writes);
+    run_cocotb(*top, trace_file);
+    return Verilated::threadContextp()->errorCount() > 0 ? 1 : 0;
 }

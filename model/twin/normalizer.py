@@ -56,11 +56,16 @@ def round_unit(product, config: Config):
     return unit, cosine
 
 
-def normalizer(normal, config: Config, trace: dict | None = None):
-    """Unit normal and |cos(i)| of interpolated normals.
+def lit(normal, two_sided: bool):
+    """Zn > 0, or Zn not 0 if `two_sided`: decided on the interpolated Zn, before any rounding."""
+    return (normal[2] > 0) | (two_sided & (normal[2] < 0))
 
-    normal: int64[3, n] in `normal`. Returns unit int64[3, n] in `unit` and |Zn| int64[n] in
-    `cosine`, which keeps one more bit. The zero vector gives zeros.
+
+def normalizer(normal, two_sided: bool, config: Config, trace: dict | None = None):
+    """Unit normal, |cos(i)| and whether they are lit, of interpolated normals.
+
+    normal: int64[3, n] in `normal`. Returns unit int64[3, n] in `unit`, |Zn| int64[n] in
+    `cosine`, which keeps one more bit, and lit bool[n]. The zero vector gives zeros, not lit.
     """
     shift = leading_zeros(normal, config)
     mantissa = align(normal, shift, config)
@@ -76,4 +81,5 @@ def normalizer(normal, config: Config, trace: dict | None = None):
         trace["normalizer.root_operand"] = (operand, below_one.astype(np.int64))
         trace["normalizer.scale"] = tuple(product)
         trace["normalizer.round"] = (*unit, cosine)
-    return unit, cosine
+        trace["normalizer.lit"] = (lit(normal, two_sided).astype(np.int64),)
+    return unit, cosine, lit(normal, two_sided)

@@ -38,12 +38,8 @@ def interpolate(spans, span, k, config: Config):
 
 
 def shade(normal, material, frame: Frame, config: Config = DEFAULT, trace: dict | None = None):
-    """Codes int64[3, n] of interpolated normals (int64[3, n] in `normal`) and their materials.
-
-    Lit is decided on the interpolated Zn itself, before any rounding.
-    """
-    lit = (normal[2] > 0) | (frame.two_sided & (normal[2] < 0))
-    unit, cosine = normalizer(normal, config, trace)
+    """Codes int64[3, n] of interpolated normals (int64[3, n] in `normal`) and their materials."""
+    unit, cosine, lit = normalizer(normal, frame.two_sided, config, trace)
     return shading_unit(unit, cosine, lit, material, frame, config, trace)
 
 

@@ -1,0 +1,171 @@
+"""The error budget: how far the hardware's S can be from eq. (3), derived stage by stage.
+
+Every bound follows from the formats, the tables' segments and the integers at the ports; nothing
+is measured. `tests/test_error.py` holds the twin to each stage's bound and to the whole.
+
+Notation: an error is absolute unless called relative; |h| = 1 + eta; w = (hz Yn, hz Xn - hx Zn) is
+the normal across the half-way vector, so that v = 1 - cos(s) = 2 |w|**2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .config import DEFAULT, Config, Format
+from .frame import Frame
+
+
+@dataclass(frozen=True)
+class Row:
+    """One line of the budget: where, how much, and why."""
+
+    stage: str
+    bound: float
+    why: str
+
+
+def _round(fmt: Format) -> float:
+    """Rounding to `fmt`, or clamping 1.0 to its largest code: half an LSB, or one at 1.0."""
+    return fmt.lsb / 2
+
+
+def direction(config: Config) -> float:
+    """Angle (radians) between the interpolated normal and its mantissas.
+
+    Half an LSB in each component; the longest component is at least 1/2. (A component clamped
+    below 1 loses up to one LSB, but then it is twice as long.)
+    """
+    return np.sqrt(3) * _round(config.mantissa) / 0.5
+
+
+def inverse_sqrt(config: Config) -> float:
+    """Relative error of `inverse_sqrt` against 1/sqrt of its own operand.
+
+    Straight lines moved halfway: h**2/16 f''; f''/f = 3/(4 x**2), the worst of each octave at its
+    left end, where h/x is 2**-root_index_bits. Then half a unit of the value, half a unit of the
+    slope, the cut of the product (slopes are 8 times finer than values), and the final rounding
+    or, at 1, the clamp by one LSB; those against the smallest root, 1/2.
+    """
+    h = 2.0**-config.root_index_bits
+    value = 2.0**-config.root_value_bits
+    line = 0.75 * h**2 / 16
+    return line + (value / 2 + value / 16 + value / 8 + _round(config.root)) / 0.5
+
+
+def root_operand(config: Config) -> float:
+    """Relative error of the root that comes from cutting |m|**2, 1 or more, to its operand."""
+    return config.root_operand.lsb / 2
+
+
+def length(config: Config) -> float:
+    """Relative error of the length of the unit normal, before it is rounded."""
+    return inverse_sqrt(config) + root_operand(config)
+
+
+def cosine(config: Config) -> float:
+    """Error of cos(i) = Zn: direction, length, and rounding or, at 1, the clamp by one LSB."""
+    return direction(config) + length(config) + config.cosine.lsb
+
+
+def across(half_vector, config: Config) -> tuple[float, float]:
+    """Error of w: (relative, absolute) parts.
+
+    Relative: length of the unit normal, and |h|. Absolute: the direction (the map N -> w has norm
+    |h|), the rounded components of N (one of them may be clamped at 1 by a whole LSB), and the
+    rounding of the two components of w.
+    """
+    h = config.half_vector.real(half_vector)
+    norm = float(np.hypot(*h))
+    hx, hz = np.abs(h)
+    half = _round(config.unit)
+    components = half * max(np.hypot(2 * hz, hx + hz), np.hypot(hz, hx + hz + max(hx, hz)))
+    absolute = norm * direction(config) + components + np.sqrt(2) * half
+    return length(config) + abs(norm - 1), float(absolute)
+
+
+def versine(v, half_vector, config: Config):
+    """Error of v (float array, 0 to 1) = 2 |w|**2: twice the growth of the square, and rounding."""
+    relative, absolute = across(half_vector, config)
+    w = np.sqrt(np.asarray(v) / 2)
+    dw = relative * w + absolute
+    return 2 * (2 * w * dw + dw**2) + _round(config.versine)
+
+
+def specular_power(n: float, config: Config) -> float:
+    """Error of `specular_power` against (1 - v)**n of its own operands.
+
+    With x = n * -log2(cos s), an error dx changes the power by at most 2**-x ln 2 dx.
+    log: straight lines (the first is clipped at 0: no halving), half a unit of value and of slope,
+    the cut of the product. Mantissa of the log: cut to `log_mantissa_bits`, relative, x 2**-x ln 2
+    is at most 1/e. x: cut, but the table of 2**-f is centred on the cut. exp: straight lines, half
+    a unit of value and slope, the cuts of the product and of the shift. Then rounding or, at 1,
+    the clamp by one LSB.
+    """
+    if n == 1:
+        return config.power.lsb
+    c = np.linspace(0.5, 1, 4097)
+    h = 2.0 ** -(config.log_index_bits + 1)
+    unit = config.log_value.lsb
+    log_error = h**2 / 8 / np.log(2) / c[:-1] ** 2 + unit / 2 + unit / 2 + unit
+    log_part = float(np.max(c[1:] ** n * n * np.log(2) * log_error))
+    mantissa_part = 2.0 ** -(config.log_mantissa_bits - 1) / np.e
+    cut_part = np.log(2) * config.power_log.lsb / 2
+    unit, h = config.exp_value.lsb, 2.0**-config.exp_index_bits
+    exp_part = np.log(2) ** 2 * h**2 / 16 + unit / 2 + unit / 2 + unit + unit
+    return log_part + mantissa_part + cut_part + exp_part + config.power.lsb
+
+
+def power(n: float, half_vector, config: Config) -> float:
+    """Error of cos(s)**n: that of v carried through the power, and the power's own.
+
+    n c**(n-1) dv, with c at the end of each step of v where it is largest and dv where it is
+    largest: a bound, not an estimate.
+    """
+    v = np.linspace(0, 1, 1025) ** 2  # dense near the highlight
+    dv = versine(v[1:], half_vector, config)
+    c = np.minimum(1 - v[:-1] + dv, 1)
+    return float(np.max(n * c ** (n - 1) * dv)) + specular_power(n, config)
+
+
+def weight(points, config: Config) -> float:
+    """Error of W(i), codes `points` int[P]: the steepest line times the error of Zn, rounding."""
+    real = config.coefficient.real(points)
+    steepest = float(np.abs(np.diff(real)).max()) * (len(real) - 1)
+    return steepest * cosine(config) + _round(config.weight)
+
+
+def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
+    """The budget of one material of `frame`; the last row bounds |code - 255 S| in LSB."""
+    table = frame.materials
+    n = float(config.exponent.real(table.exponent[material]))
+    diffuse = float(config.coefficient.real(table.diffuse[material]).max())
+    w = float(config.coefficient.real(table.weight[material]).max())
+    white = (1 << config.colour_bits) - 1
+    parts = [
+        Row("normalizer: direction", direction(config), "mantissas of the normal, radians"),
+        Row("normalizer: length", length(config), "1/sqrt and its operand, relative"),
+        Row("cos(i)", cosine(config), "direction, length, rounding"),
+        Row("w", across(frame.half_vector, config)[1], "direction, rounding; absolute part"),
+        Row("specular_power", specular_power(n, config), f"log and exp tables, n = {n:g}"),
+    ]
+    if w > 0:
+        specular = w * power(n, frame.half_vector, config)
+        weight_error = weight(table.weight[material], config)
+    else:
+        specular = weight_error = 0.0
+    parts += [
+        Row("diffuse term", diffuse * cosine(config), "Cp (1 - d) times the error of cos(i)"),
+        Row("specular term", specular, "W times the error of cos(s)^n"),
+        Row("W(i)", weight_error, "steepest line times the error of cos(i), rounding"),
+        Row("cut of S", config.intensity.lsb, "products are whole, the sum is cut once"),
+    ]
+    total = white * sum(row.bound for row in parts[5:]) + 0.5
+    return [*parts, Row("code", total, f"LSB: {white} times the terms, and the final rounding")]
+
+
+def bound_lsb(frame: Frame, config: Config = DEFAULT) -> float:
+    """Bound of |code - 255 S| in LSB over the materials that `frame` uses (1/2 if it has none)."""
+    used = np.unique(frame.spans["material"]).tolist()
+    return max((rows(m, frame, config)[-1].bound for m in used), default=0.5)

@@ -1,0 +1,246 @@
+"""cocotb tests of the datapath modules: directed, exhaustive where the input fits, random.
+
+Run by tests/test_modules.py, one module a simulation, through the generated benches.
+"""
+
+from __future__ import annotations
+
+import os
+
+import cocotb
+import numpy as np
+
+from model.config import DEFAULT as C
+from model.frame import SPAN_DTYPE, Frame, MaterialTable
+from model.registers import writes
+from model.twin.inverse_sqrt import inverse_sqrt
+from model.twin.normalizer import normalizer
+from model.twin.reflection import reflection
+from model.twin.shading_unit import shading_unit
+from model.twin.specular_power import specular_power
+from model.twin.specular_weight import specular_weight
+from sim.unit_tb import UnitTB
+
+SEED = int(os.environ.get("PHONG_SEED", "75"))
+RANDOM = 200_000
+MODULE = os.environ["PHONG_MODULE"]
+NOTE = f"seed {SEED}"
+
+
+def _only(module: str):
+    """The tests of other modules do not exist in this module's simulation."""
+    return cocotb.test() if module == MODULE else lambda test: test
+
+
+def _edges(fmt, rng, n: int) -> np.ndarray:
+    """Random codes, a third of them within 4 of an end, of 0 or of a power of two."""
+    codes = rng.integers(fmt.min, fmt.max + 1, n)
+    marks = [fmt.min, fmt.max, 0]
+    marks += [s << k for k in range(fmt.bits) for s in ((1, -1) if fmt.signed else (1,))]
+    near = rng.choice(marks, n) + rng.integers(-4, 5, n)
+    return np.clip(np.where(rng.random(n) < 1 / 3, near, codes), fmt.min, fmt.max)
+
+
+# -- inverse_sqrt ---------------------------------------------------------------------------------
+
+
+@_only("inverse_sqrt")
+async def inverse_sqrt_exhaustive(dut):
+    """Every operand, those below 1 included."""
+    tb = UnitTB(dut, MODULE)
+    for first in range(0, 1 << C.root_operand.bits, 1 << 20):
+        operand = np.arange(first, first + (1 << 20))
+        trace = {}
+        inverse_sqrt(operand, C, trace)
+        await tb.check([operand], trace)
+
+
+@_only("inverse_sqrt")
+async def inverse_sqrt_latency(dut):
+    """One operand at a time shows at the stated clock only."""
+    await UnitTB(dut, MODULE).check_latency(
+        [C.root_operand.one], [3 * C.root_operand.one], "inverse_sqrt.round"
+    )
+
+
+# -- normalizer -----------------------------------------------------------------------------------
+
+
+def _normals(rng, n: int) -> np.ndarray:
+    """Normals int64[3, n]: all lengths, unequal components, single components, zeros."""
+    normal = _edges(C.normal, rng, 3 * n).reshape(3, n) >> rng.integers(0, C.normal.bits, n)
+    unequal = normal >> rng.integers(0, C.normal.bits, (3, n))
+    normal = np.where(rng.random(n) < 0.5, normal, unequal)
+    return np.where(rng.random((3, n)) < 0.1, 0, normal)
+
+
+@_only("normalizer")
+async def normalizer_random(dut):
+    """Random and extreme normals, one- and two-sided."""
+    tb = UnitTB(dut, MODULE)
+    for two_sided in (0, 1):
+        await tb.hold(two_sided=two_sided)
+        normal = _normals(np.random.default_rng(SEED + two_sided), RANDOM)
+        trace = {}
+        normalizer(normal, bool(two_sided), C, trace)
+        await tb.check(list(normal), trace, NOTE)
+
+
+@_only("normalizer")
+async def normalizer_small(dut):
+    """Every normal with components from -5 to 5, at every size."""
+    tb = UnitTB(dut, MODULE)
+    side = np.arange(-5, 6)
+    grid = np.stack(np.meshgrid(side, side, side)).reshape(3, -1)
+    normal = np.concatenate([grid << k for k in range(C.normal.bits - 3)], axis=1)
+    trace = {}
+    normalizer(normal, False, C, trace)
+    await tb.check(list(normal), trace)
+
+
+@_only("normalizer")
+async def normalizer_latency(dut):
+    """One normal at a time shows at the stated clock only."""
+    tb = UnitTB(dut, MODULE)
+    one = C.normal.one
+    await tb.check_latency([one, 0, 0], [0, one, one], "normalizer.round")
+    await tb.check_latency([one, 0, 0], [one, 0, 1], "normalizer.lit")
+
+
+# -- reflection -----------------------------------------------------------------------------------
+
+
+@_only("reflection")
+async def reflection_random(dut):
+    """Unit and arbitrary words, the half-way vector from light to opposite, and its extremes."""
+    tb = UnitTB(dut, MODULE)
+    rng = np.random.default_rng(SEED)
+    halves = [C.half_vector.quantize([np.sin(a), np.cos(a)]) for a in np.linspace(0, 1.57, 7)]
+    halves += [np.array([C.half_vector.min, C.half_vector.max])]
+    halves += [np.array([C.half_vector.max, C.half_vector.min])]
+    for half in halves:
+        await tb.hold(**{
+            name: int(code) & ((1 << C.half_vector.bits) - 1)
+            for name, code in zip(("half_x", "half_z"), half, strict=True)
+        })  # fmt: skip
+        direction = rng.normal(size=(3, RANDOM // 8))
+        unit = C.unit.quantize(direction / np.linalg.norm(direction, axis=0))
+        unit = np.concatenate([unit, _edges(C.unit, rng, 3 * 5000).reshape(3, -1)], axis=1)
+        trace = {}
+        reflection(unit, tuple(int(h) for h in half), C, trace)
+        await tb.check(list(unit), trace, f"{NOTE}, half vector {half}")
+
+
+@_only("reflection")
+async def reflection_latency(dut):
+    """One normal at a time shows at the stated clock only."""
+    tb = UnitTB(dut, MODULE)
+    await tb.hold(half_z=C.half_vector.max)
+    await tb.check_latency([0, 0, C.unit.max], [C.unit.max // 2, 0, 0], "reflection.versine")
+
+
+# -- specular_power -------------------------------------------------------------------------------
+
+
+@_only("specular_power")
+async def specular_power_random(dut):
+    """Random operands for random exponents, and all versines near both ends."""
+    tb = UnitTB(dut, MODULE)
+    rng = np.random.default_rng(SEED)
+    v = np.concatenate([
+        np.arange(20000), C.versine.max - np.arange(20000), _edges(C.versine, rng, RANDOM),
+        np.arange(0, C.versine.one, 61),
+    ])  # fmt: skip
+    one = C.exponent.one
+    special = np.array([1, 1.5, 2, 10, 20, 32, 64, 127, 128]) * one
+    n = rng.integers(one, 128 * one + 1, len(v))
+    n = np.where(rng.random(len(v)) < 0.5, rng.choice(special.astype(np.int64), len(v)), n)
+    n = np.where(rng.random(len(v)) < 0.05, one + rng.integers(-1, 2, len(v)), n)
+    trace = {}
+    specular_power(v, n, C, trace)
+    await tb.check([v, n], trace, NOTE)
+
+
+@_only("specular_power")
+async def specular_power_latency(dut):
+    """One operand at a time shows at the stated clock only, also through the bypass."""
+    tb = UnitTB(dut, MODULE)
+    half, one = C.versine.one // 2, C.exponent.one
+    await tb.check_latency([0, 2 * one], [half, 2 * one], "specular_power.bypass")
+    await tb.check_latency([0, one], [half, one], "specular_power.bypass")
+    await tb.check_latency([half, 2 * one], [half, one], "specular_power.bypass")
+
+
+# -- specular_weight, shading_unit: with a material table --------------------------------------------
+
+
+def _frame(rng) -> Frame:
+    """All materials random, some at the ends of their ranges; a half-way vector in between."""
+    table = MaterialTable.empty(C)
+    for m in range(C.materials):
+        cp = rng.choice([0.0, 1.0], 3) if m < 4 else rng.random(3)
+        weight = rng.choice([0.0, 1.0], C.weight_points) if m % 4 == 0 else None
+        weight = rng.random(C.weight_points) if weight is None else weight
+        d = (0.0, 1.0, 0.5)[m] if m < 3 else rng.random()
+        table.set(m, cp, d, weight, float(rng.choice([1, 1.5, 10, 128])), C)
+    spans = np.zeros(C.materials, SPAN_DTYPE)
+    spans["material"] = np.arange(C.materials)
+    hx, hz = C.half_vector.quantize([np.sin(0.6), np.cos(0.6)])
+    return Frame(1, 1, (int(hx), int(hz)), False, (0, 0, 0), table, spans)
+
+
+async def _write(tb: UnitTB, frame: Frame):
+    """Write the material table as rtl/register_map.v decodes it."""
+    index_bits = C.weight_index_bits
+    kind = 1 << (C.material_bits + index_bits)
+    has = {port for port, _ in __import__("sim.units", fromlist=["MODULES"]).MODULES[MODULE].held}
+    for address, word in writes(frame, C):
+        field = address & ((1 << index_bits) - 1)
+        strobes = dict.fromkeys(
+            ("write_enable", "write_weight", "write_exponent", "write_ambient", "write_diffuse"), 0
+        )
+        if not address & kind:
+            strobes["write_enable"] = strobes["write_weight"] = 1
+        elif field < 3:
+            strobes["write_ambient"] = 1 << field
+        elif field < 6:
+            strobes["write_diffuse"] = 1 << (field - 3)
+        elif field == 6:
+            strobes["write_exponent"] = 1
+        strobes = {port: value for port, value in strobes.items() if port in has}
+        await tb.hold(write_address=address & (kind - 1), write_word=word, **strobes)
+    await tb.hold(**dict.fromkeys(strobes, 0))
+
+
+@_only("specular_weight")
+async def specular_weight_random(dut):
+    """All materials, all intervals, the ends of Zn."""
+    tb = UnitTB(dut, MODULE)
+    rng = np.random.default_rng(SEED)
+    frame = _frame(rng)
+    await _write(tb, frame)
+    cosine = _edges(C.cosine, rng, RANDOM)
+    material = rng.integers(0, C.materials, RANDOM)
+    trace = {}
+    specular_weight(cosine, material, frame.materials.weight, C, trace)
+    await tb.check([cosine, material], trace, NOTE)
+
+
+@_only("shading_unit")
+async def shading_unit_random(dut):
+    """Random unit normals, lit and not, of all materials; red, green and blue apart."""
+    tb = UnitTB(dut, MODULE)
+    rng = np.random.default_rng(SEED)
+    frame = _frame(rng)
+    await _write(tb, frame)
+    await tb.hold(half_x=frame.half_vector[0], half_z=frame.half_vector[1])
+    direction = rng.normal(size=(3, RANDOM))
+    direction[0] += 0.5
+    direction[2] = np.abs(direction[2]) + 0.5
+    unit = C.unit.quantize(direction / np.linalg.norm(direction, axis=0))
+    cosine = C.cosine.quantize(direction[2] / np.linalg.norm(direction, axis=0))
+    lit = rng.random(RANDOM) < 0.8
+    material = rng.integers(0, C.materials, RANDOM)
+    trace = {}
+    shading_unit(unit, cosine, lit, material, frame, C, trace)
+    await tb.check([*unit, cosine, lit, material], trace, NOTE)
