@@ -1,9 +1,9 @@
 """Phong75's model: scenes to spans, the bit-accurate twin, the float64 reference.
 
-    import model
-    front = model.front_end(model.load_scene("teapot"))
-    pixels = model.render(front.frame)             # to the bit what the RTL gives
-    exact = model.reference.render(front.frame)    # 255 * S in float64
+import model
+front = model.front_end(model.load_scene("teapot"))
+pixels = model.render(front.frame)             # to the bit what the RTL gives
+exact = model.reference.render(front.frame)    # 255 * S in float64
 """
 
 from . import reference, twin

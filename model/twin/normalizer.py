@@ -47,9 +47,7 @@ def scale(mantissa, root, below_one):
 def round_unit(product, config: Config):
     """Stage 7: the unit normal in `unit`, and |Zn| in `cosine`, each rounded once."""
     fraction = config.mantissa.fraction + config.root.fraction
-    unit = fixed.saturate(
-        fixed.round_shift(product, fraction - config.unit.fraction), config.unit
-    )
+    unit = fixed.saturate(fixed.round_shift(product, fraction - config.unit.fraction), config.unit)
     cosine = fixed.saturate(
         fixed.round_shift(np.abs(product[2]), fraction - config.cosine.fraction), config.cosine
     )

