@@ -82,13 +82,13 @@ class Config:
 
     name: str = "default"
 
-    # -- spans and pixels ----------------------------------------------------------------------
+    # -- spans and pixels --------------------------------------------------------------------------
     coordinate_bits: int = 12  # x and y: pictures of up to 4096 x 4096
     normal: Format = _signed(1, 30)  # interpolated normal, one component; also its step
     material_bits: int = 4  # 16 materials
     colour_bits: int = 8  # code of red, green, blue
 
-    # -- registers and material table ------------------------------------------------------------
+    # -- registers and material table --------------------------------------------------------------
     half_vector: Format = _signed(0, 17)  # one component of h, halfway between light and eye
     coefficient: Format = _unsigned(1, 16)  # Cp*d, Cp*(1-d), W: 0 and 1 are exact
     exponent: Format = _unsigned(8, 9)  # n
@@ -104,7 +104,7 @@ class Config:
     unit: Format = _signed(0, 17)  # component of the unit normal
     cosine: Format = _unsigned(0, 18)  # cos(i) = Zn
 
-    # -- shading -------------------------------------------------------------------------------------
+    # -- shading -----------------------------------------------------------------------------------
     versine: Format = _unsigned(0, 22)  # 1 - cos(s), saturated below 1
     log_index_bits: int = 9  # segments of -log2(1 - v), 0 <= v < 1/2
     log_value: Format = _unsigned(0, 22)  # table value
@@ -118,7 +118,7 @@ class Config:
     weight: Format = _unsigned(1, 17)  # W(i)
     intensity: Format = _unsigned(1, 24)  # S of one channel, before the scale to the code
 
-    # -- derived ---------------------------------------------------------------------------------------
+    # -- derived -----------------------------------------------------------------------------------
     @property
     def materials(self) -> int:
         """Number of entries of the material table."""

@@ -9,7 +9,9 @@ from .config import Format
 
 def round_shift(value, shift: int):
     """`value / 2**shift`, rounded half up: add half a unit, then shift right arithmetically."""
-    return (value + (1 << (shift - 1))) >> shift
+    total = value + (1 << (shift - 1))
+    total >>= shift  # in place: `total` is ours
+    return total
 
 
 def saturate(value, fmt: Format):

@@ -61,8 +61,10 @@ class MaterialTable:
         """
         cp, weight = np.asarray(cp, float), np.asarray(weight, float)
         for name, value in (("Cp", cp), ("d", np.asarray(d, float)), ("W", weight)):
-            if not np.all((value >= 0) & (value <= 1)):
-                raise InputError(f"material {index}: {name} = {value} is outside [0, 1]")
+            outside = np.ravel(~((value >= 0) & (value <= 1)))
+            if outside.any():
+                wrong = np.ravel(value)[outside][0]
+                raise InputError(f"material {index}: {name} = {wrong} is outside [0, 1]")
         if not 1 <= n <= 128:
             raise InputError(f"material {index}: n = {n} is outside [1, 128]")
         self.ambient[index] = config.coefficient.quantize(cp * d)

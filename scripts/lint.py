@@ -21,7 +21,7 @@ def verilator(source: Path) -> str:
     folders = [f"-I{folder}" for folder in (build.generate_header(), build.RTL, build.SIM)]
     top = ["--top-module", source.stem]
     try:
-        build._run(
+        build.run_tool(
             ["verilator", "--lint-only", "-Wall", "--no-timing", *top, *folders]
             + [build.SIM / "lint.vlt", source]
         )

@@ -28,6 +28,7 @@ from model.frame import InputError
 from model.scene import load_scene
 from model.scene_to_spans import front_end
 from sim.build import BUILD, BuildError
+from sim.locate import locate
 from sim.run_frame import SimulationError, simulate
 
 
@@ -181,6 +182,8 @@ def _run(job, simulate, steps, config, folder):
     (folder / "report.json").write_text(text, encoding="utf-8")
     if comparison.first:
         print(_where(comparison.first), file=sys.stderr)
+        if comparison.first.expected:
+            print(locate(frame, comparison.first.index), file=sys.stderr)
     return found
 
 

@@ -1,0 +1,1 @@
+"""The simulation: benches, their cocotb testbench classes, and the build with Verilator."""

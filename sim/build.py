@@ -26,8 +26,7 @@ RTL = ROOT / "rtl"
 SIM = ROOT / "sim"
 BUILD = ROOT / "build"
 
-#: The compiler's options: those of Verilator's own makefile, but optimized. The model alone is
-#: compiled with native instructions left out, so that a build can be moved.
+#: The compiler's options. No native instructions: a build may be kept for another machine.
 CXX_FLAGS = "-std=c++20 -O2 -fno-plt -DVL_TIME_CONTEXT"
 
 _VERILATOR_ROOT = Path(verilator.__file__).resolve().parent
@@ -43,7 +42,11 @@ def _environment() -> dict[str, str]:
     return os.environ | {"VERILATOR_ROOT": str(_VERILATOR_ROOT), "PATH": os.pathsep.join(paths)}
 
 
-def _run(command: list, cwd: Path | None = None) -> str:
+def run_tool(command: list, cwd: Path | None = None) -> str:
+    """Run a tool in the environment of the installed packages; returns what it said.
+
+    Raises BuildError with what it said.
+    """
     done = subprocess.run(
         [str(c) for c in command], cwd=cwd, env=_environment(), text=True,
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -102,7 +105,7 @@ def runtime() -> Path:
     if any(job.returncode for job in jobs):
         raise BuildError("g++ failed on Verilator's runtime:\n" + "".join(said))
     part = folder / f"part.{os.getpid()}.a"
-    _run(["ar", "rcs", part, *[folder / f"{name}.o" for name in _RUNTIME]])
+    run_tool(["ar", "rcs", part, *[folder / f"{name}.o" for name in _RUNTIME]])
     part.replace(library)
     return library
 
@@ -152,7 +155,7 @@ class Bench(Verilator):
         for name, text in self._texts.items():
             _replace(self.folder / name, text)
         libs = cocotb_tools.config.libs_dir
-        _run(
+        run_tool(
             [
                 _VERILATOR_ROOT / "bin" / "verilator", "--cc", "--vpi", "--prefix", "Vtop",
                 "--top-module", self._top, "--Mdir", self.folder, "-O3", "--x-assign", "unique",
@@ -167,7 +170,7 @@ class Bench(Verilator):
         whole = self.folder / "whole.cpp"
         whole.write_text("".join(f'#include "{unit.name}"\n' for unit in units))
         part = self.folder / f"{self._top}.{os.getpid()}"
-        _run(
+        run_tool(
             [
                 "g++", *CXX_FLAGS.split(), "-DVERILATOR=1", f"-DVM_TRACE={int(self._trace)}",
                 f"-DVM_TRACE_VCD={int(self._trace)}", f"-I{include}", f"-I{include / 'vltstd'}",

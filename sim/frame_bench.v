@@ -18,7 +18,7 @@ module frame_bench #(
     input wire [ADDRESS_BITS-1:0] write_address,
     input wire [   WORD_BITS-1:0] write_word,
 
-    // the job: files <dir>/<job>.spans (records from byte `skip` on) and <dir>/<job>.pixels
+    // the job: files <job>.spans (records from byte `skip` on) and <job>.pixels
     input wire        start,
     input wire        autostart,    // start at once, without cocotb: +job, +skip, +spans, +pixels
     input wire [31:0] job,
@@ -67,8 +67,7 @@ module frame_bench #(
       .illegal_span(illegal_span)
   );
 
-  reg [1023:0] dir;
-  reg [1023:0] name;
+  reg [255:0] name;
   integer in_file, out_file, got;
   reg [RECORD_BITS-1:0] record;
   reg [31:0] spans_read, clocks, entered, waited;
@@ -80,7 +79,6 @@ module frame_bench #(
     running = 0;
     s_valid = 0;
     m_ready = 0;
-    if (!$value$plusargs("dir=%s", dir)) dir = ".";
   end
 
   // Galois LFSR, x^32 + x^22 + x^2 + x + 1.
@@ -109,10 +107,10 @@ module frame_bench #(
         got = $value$plusargs("spans=%d", spans_now);
         got = $value$plusargs("pixels=%d", pixels_now);
       end
-      $sformat(name, "%0s/%0d.spans", dir, job_now);
+      $sformat(name, "%0d.spans", job_now);
       in_file = $fopen(name, "rb");
       got = $fseek(in_file, skip_now, 0);
-      $sformat(name, "%0s/%0d.pixels", dir, job_now);
+      $sformat(name, "%0d.pixels", job_now);
       out_file = $fopen(name, "wb");
       spans_read <= 0;
       s_valid <= 0;

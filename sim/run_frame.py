@@ -75,7 +75,7 @@ def read_pixels(path: Path, config: Config) -> Pixels:
     return Pixels(x, y, rgb, field(3 * colour + 2 * place, 1).astype(bool))
 
 
-def _body_offset(path: Path) -> int:
+def body_offset(path: Path) -> int:
     """Where the records of a span file start: after its second line."""
     with open(path, "rb") as file:
         file.readline()
@@ -103,7 +103,7 @@ def simulate_jobs(jobs: list[Job], config: Config = DEFAULT, bench: Bench | None
             else:
                 path.symlink_to(job.spans_path.resolve())
             described.append({
-                "job": k, "skip": _body_offset(path), "spans": len(job.frame.spans),
+                "job": k, "skip": body_offset(path), "spans": len(job.frame.spans),
                 "pixels": int(np.maximum(job.frame.spans["length"], 1).sum()),
                 "idle": job.idle, "stall": job.stall, "seed": job.seed,
                 "stop_after": job.stop_after, "reset_first": job.reset_first,
@@ -111,10 +111,7 @@ def simulate_jobs(jobs: list[Job], config: Config = DEFAULT, bench: Bench | None
             })  # fmt: skip
         (folder / "jobs.json").write_text(json.dumps(described))
         try:
-            bench.run(
-                "sim.frame_jobs", folder, plusargs=[f"+dir={folder}"],
-                extra_env={"PHONG_JOBS": str(folder)},
-            )  # fmt: skip
+            bench.run("sim.frame_jobs", folder, extra_env={"PHONG_JOBS": str(folder)})
             said = json.loads((folder / "counters.json").read_text())
         except (OSError, RuntimeError, SystemExit) as error:
             log = folder / "sim.log"

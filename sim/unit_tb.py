@@ -9,7 +9,30 @@ import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, FallingEdge
 
+from model.config import DEFAULT, Config
+from model.frame import Frame
+from model.registers import FIELDS, writes
 from sim.units import MODULES, lanes
+
+
+def first_difference(module: str, inputs, expected: dict, got: dict) -> str | None:
+    """One line on the first stage, in the order of the data, where `got` is not `expected`.
+
+    Both {stage: (int arrays)}. None if all is the same.
+    """
+    for stage, arrays in expected.items():
+        for k, (want, have) in enumerate(zip(arrays, got[stage], strict=True)):
+            bad = np.flatnonzero(np.asarray(want) != have)
+            if len(bad):
+                i = int(bad[0])
+                names = MODULES[module].inputs
+                given = {name: int(column[i]) for name, column in zip(names, inputs, strict=True)}
+                return (
+                    f"module {module}, stage {stage} (signal {k}): {len(bad)} of {len(have)} "
+                    f"vectors differ; first: inputs {given}, expected {int(want[i])}, "
+                    f"got {int(have[i])}"
+                )
+    return None
 
 
 class UnitTB:
@@ -31,6 +54,22 @@ class UnitTB:
         for port, value in values.items():
             getattr(self.dut, port).value = value
         await FallingEdge(self.dut.clk)
+
+    async def write_table(self, frame: Frame, config: Config = DEFAULT):
+        """Write the material table of `frame`, decoded as rtl/register_map.v does it."""
+        kind = 1 << (config.material_bits + config.weight_index_bits)
+        has = [port for port, _ in MODULES[self.module].held]
+        for address, word in writes(frame, config):
+            field = address & ((1 << config.weight_index_bits) - 1)
+            to_table = not address & kind
+            strobes = {"write_enable": to_table, "write_weight": to_table}
+            for name, count in (("ambient", 3), ("diffuse", 3), ("exponent", 1)):
+                place = field - FIELDS[name]
+                hit = not to_table and 0 <= place < count
+                strobes[f"write_{name}"] = hit << place if hit else 0
+            strobes = {port: int(value) for port, value in strobes.items() if port in has}
+            await self.hold(write_address=address & (kind - 1), write_word=word, **strobes)
+        await self.hold(**dict.fromkeys(strobes, 0))
 
     async def send(self, *inputs) -> dict[str, list[np.ndarray]]:
         """Run the vectors `inputs` (int arrays of one length, one per input port).
@@ -60,19 +99,8 @@ class UnitTB:
     async def check(self, inputs, expected: dict, note: str = ""):
         """Send `inputs`; every stage of `expected` {stage: (int arrays)} must come to the bit."""
         got = await self.send(*inputs)
-        for stage, arrays in expected.items():
-            for k, (want, have) in enumerate(zip(arrays, got[stage], strict=True)):
-                bad = np.flatnonzero(np.asarray(want) != have)
-                if len(bad):
-                    i = int(bad[0])
-                    given = dict(
-                        zip(MODULES[self.module].inputs, (int(a[i]) for a in inputs), strict=True)
-                    )
-                    raise AssertionError(
-                        f"module {self.module}, stage {stage} (signal {k}): {len(bad)} of "
-                        f"{len(have)} vectors differ; first: inputs {given}, expected "
-                        f"{int(want[i])}, got {int(have[i])}; {note}"
-                    )
+        difference = first_difference(self.module, inputs, expected, got)
+        assert not difference, f"{difference}; {note}"
         missing = set(got) - set(expected)
         assert not missing, f"stages without expectation: {missing}"
 

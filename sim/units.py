@@ -206,7 +206,7 @@ module {top} (
     input wire clk,
 {held_ports}
     input wire        start,
-    input wire [31:0] job,      // vectors of <dir>/<job>.in, signals to <dir>/<job>.out
+    input wire [31:0] job,      // vectors of <job>.in, signals to <job>.out
     input wire [31:0] vectors,
     output reg        running
 );
@@ -223,19 +223,18 @@ module {top} (
   );
 
 {assigns}
-  reg [1023:0] dir, name;
+  reg [255:0] name;
   reg [31:0] clocks;
   integer in_file, out_file, got;
   initial begin
     running = 0;
-    if (!$value$plusargs("dir=%s", dir)) dir = ".";
   end
 
   always @(posedge clk) begin
     if (!running & start) begin
-      $sformat(name, "%0s/%0d.in", dir, job);
+      $sformat(name, "%0d.in", job);
       in_file = $fopen(name, "rb");
-      $sformat(name, "%0s/%0d.out", dir, job);
+      $sformat(name, "%0d.out", job);
       out_file = $fopen(name, "wb");
       $fwrite(out_file, "%u", latencies);
       clocks <= 0;

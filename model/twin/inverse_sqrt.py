@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from .. import fixed
 from ..config import Config
 from ..tables import inverse_sqrt_table
@@ -17,7 +19,7 @@ def lookup(operand, config: Config):
     offset = aligned & ((1 << offset_bits) - 1)
     table = inverse_sqrt_table(config)
     address = (high << config.root_index_bits) | segment
-    return table.value[address], table.slope[address], offset
+    return np.take(table.value, address), np.take(table.slope, address), offset
 
 
 def refine(value, slope, offset, config: Config):

@@ -18,11 +18,11 @@ def intensity(ambient, diffuse, cosine, weight, power, lit, config: Config):
     """Stage: S per channel, int64[3, n], all products whole; clamped to 1, cut to `intensity`."""
     coefficient, cos, power_f = config.coefficient, config.cosine, config.power
     fraction = config.weight.fraction + power_f.fraction
-    s = (ambient << (fraction - coefficient.fraction)) + np.where(
-        lit,
-        ((diffuse * cosine) << (fraction - coefficient.fraction - cos.fraction)) + weight * power,
-        0,
-    )
+    lit = lit.astype(np.int64)
+    s = diffuse * (cosine * lit)
+    s <<= fraction - coefficient.fraction - cos.fraction
+    s += ambient << (fraction - coefficient.fraction)
+    s += weight * power * lit
     return np.minimum(s, 1 << fraction) >> (fraction - config.intensity.fraction)
 
 
@@ -43,7 +43,8 @@ def shading_unit(unit, cosine, lit, material, frame, config: Config, trace: dict
     power = specular_power(v, table.exponent[material], config, trace)
     weight = specular_weight(cosine, material, table.weight, config, trace)
     s = intensity(
-        table.ambient.T[:, material], table.diffuse.T[:, material],
+        np.stack([np.take(column, material) for column in table.ambient.T]),
+        np.stack([np.take(column, material) for column in table.diffuse.T]),
         cosine, weight, power, lit, config,
     )  # fmt: skip
     colour = code(s, config)

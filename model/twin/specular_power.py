@@ -21,7 +21,8 @@ def log_lookup(t, config: Config):
     offset_bits = config.versine.bits - 1 - config.log_index_bits
     table = log_table(config)
     address = (t >> offset_bits) & ((1 << config.log_index_bits) - 1)
-    return table.value[address], table.slope[address], t & ((1 << offset_bits) - 1)
+    offset = t & ((1 << offset_bits) - 1)
+    return np.take(table.value, address), np.take(table.slope, address), offset
 
 
 def log_refine(e, value, slope, offset, config: Config):
@@ -55,7 +56,8 @@ def exp_lookup(x, config: Config):
     table = exp_table(config)
     address = (x >> offset_bits) & ((1 << config.exp_index_bits) - 1)
     offset = x & ((1 << offset_bits) - 1)
-    return table.value[address], table.slope[address], offset, x >> config.power_log.fraction
+    whole = x >> config.power_log.fraction
+    return np.take(table.value, address), np.take(table.slope, address), offset, whole
 
 
 def exp_refine(value, slope, offset, config: Config):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from .. import fixed
 from ..config import Config
 
@@ -10,8 +12,9 @@ def lookup(cosine, material, weight, config: Config):
     """Stage 1: left point, step to the next point (int64[M, P] `weight`), offset between them."""
     offset_bits = config.cosine.bits - config.weight_index_bits
     k = cosine >> offset_bits
-    left = weight[material, k]
-    return left, weight[material, k + 1] - left, cosine & ((1 << offset_bits) - 1)
+    place = material * weight.shape[1] + k
+    left = np.take(weight, place)
+    return left, np.take(weight, place + 1) - left, cosine & ((1 << offset_bits) - 1)
 
 
 def interpolate(left, step, offset, config: Config):

@@ -1,0 +1,119 @@
+"""Clocks a second of the simulation and frames a second of the model: `make bench`.
+
+The two ways to simulate run in turns, several times, on the same frame: under cocotb as `make run`
+does it, and in a bare Verilator C++ loop (the same program and bench without cocotb). What counts
+is their ratio; the best of each is taken, since other work on the machine only ever slows down.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from model.config import DEFAULT as CONFIG
+from model.registers import writes
+from model.scene import load_scene
+from model.scene_to_spans import front_end
+from model.spans import write_spans
+from model.twin.phong_pipeline import BLOCK, interpolate, shade
+from model.twin.span_walker import span_walker
+from sim.build import BUILD, Bench
+from sim.run_frame import Job, body_offset, simulate_jobs
+
+ROUNDS = 5
+SCENE, SIZE = "teapot", (640, 480)
+COPIES = 8  # frames a measurement, so that it lasts long enough
+
+
+def bare(bench: Bench, frame, folder: Path) -> float:
+    """Clocks a second of the bare loop on `frame`."""
+    pixels = int(frame.spans["length"].sum())
+    write_spans(folder / "0.spans", frame, CONFIG)
+    lines = "".join(f"{address:x} {word:x}\n" for address, word in writes(frame, CONFIG))
+    (folder / "writes").write_text(lines)
+    said = subprocess.run(
+        [
+            bench.make() / "frame_bench", "--bare", "writes", "+job=0",
+            f"+skip={body_offset(folder / '0.spans')}", f"+spans={len(frame.spans)}",
+            f"+pixels={pixels}",
+        ],
+        cwd=folder, check=True, text=True, stdout=subprocess.PIPE,
+    ).stdout  # fmt: skip
+    clocks, seconds = re.search(r"clocks (\d+) seconds ([\d.]+)", said).groups()
+    return int(clocks) / float(seconds)
+
+
+def under_cocotb(bench: Bench, frame) -> float:
+    """Clocks a second under cocotb on `frame`, from its start until cocotb has the result."""
+    result = simulate_jobs([Job(frame)], CONFIG, bench)[0]
+    return result.cycles / result.simulate_s
+
+
+def model_seconds(count: int) -> float:
+    """Seconds of the twin's pixel stages for `count` lit pixels of one material, best of five."""
+    frame = front_end(load_scene("sphere", SIZE)).frame
+    span, k, *_ = span_walker(frame.spans, 0, int(frame.spans["length"].sum()), CONFIG)
+    normal, _ = interpolate(frame.spans, span, k, CONFIG)
+    normal = np.resize(normal.T, (count, 3)).T.copy()
+    material = np.resize(frame.spans["material"][span].astype(np.int64), count)
+    best = float("inf")
+    for _ in range(ROUNDS):
+        start = time.perf_counter()
+        for first in range(0, count, BLOCK):
+            block = slice(first, first + BLOCK)
+            shade(normal[:, block], material[block], frame, CONFIG)
+        best = min(best, time.perf_counter() - start)
+    return best
+
+
+def main() -> int:
+    """Measure and print; the numbers also go to build/bench.json. Returns the exit code."""
+    console = Console(stderr=True)
+    frame = front_end(load_scene(SCENE, SIZE)).frame
+    frame.spans = np.tile(frame.spans, COPIES)
+    frame.spans["last"][:-1] = False
+    bench = Bench("frame_bench", CONFIG)
+    bench.make()
+    rates: dict[str, list[float]] = {"bare": [], "cocotb": []}
+    with tempfile.TemporaryDirectory(dir=BUILD) as name:
+        for k in range(ROUNDS):
+            console.print(f"round {k + 1} of {ROUNDS} ...")
+            rates["bare"].append(bare(bench, frame, Path(name)))
+            rates["cocotb"].append(under_cocotb(bench, frame))
+    pixels = SIZE[0] * SIZE[1]
+    seconds = model_seconds(pixels)
+    best = {name: max(values) for name, values in rates.items()}
+    found = {
+        "simulation": {
+            "scene": SCENE, "size": SIZE, "frames": COPIES,
+            "bare_clocks_per_s": round(best["bare"]),
+            "cocotb_clocks_per_s": round(best["cocotb"]),
+            "ratio": round(best["cocotb"] / best["bare"], 3),
+        },
+        "model": {"pixels": pixels, "seconds": round(seconds, 4), "fps": round(1 / seconds, 1)},
+        "cpus": os.cpu_count(),
+    }  # fmt: skip
+    (BUILD / "bench.json").write_text(json.dumps(found, indent=2) + "\n")
+    table = Table(title=f"{SCENE} {SIZE[0]}x{SIZE[1]}, best of {ROUNDS}")
+    table.add_column("what")
+    table.add_column("rate", justify="right")
+    table.add_row("bare Verilator loop", f"{best['bare'] / 1e6:.2f} Mclock/s")
+    table.add_row("under cocotb", f"{best['cocotb'] / 1e6:.2f} Mclock/s")
+    table.add_row("ratio (1/3 at least)", f"{best['cocotb'] / best['bare']:.2f}")
+    table.add_row(f"model, {pixels} lit pixels, one core", f"{1 / seconds:.1f} frames/s")
+    Console().print(table)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

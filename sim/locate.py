@@ -1,0 +1,82 @@
+"""Which stage a wrong pixel comes from: the stages of its modules, one by one, against the twin."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+import cocotb
+import numpy as np
+
+from model.config import DEFAULT, Config
+from model.frame import Frame
+from model.spans import read_spans, write_spans
+from model.twin.normalizer import normalizer
+from model.twin.phong_pipeline import interpolate
+from model.twin.shading_unit import shading_unit
+from model.twin.span_walker import span_walker
+from sim.build import BUILD, Bench
+from sim.unit_tb import UnitTB, first_difference
+from sim.units import bench_source
+
+
+def _vectors(frame: Frame, pixel: int, config: Config):
+    """(module, input columns, expected stages) of the modules that shade pixel number `pixel`."""
+    span, k, _, _, _ = span_walker(frame.spans, pixel, pixel + 1, config)
+    normal, _ = interpolate(frame.spans, span, k, config)
+    trace: dict = {}
+    unit, cosine, lit = normalizer(normal, frame.two_sided, config, trace)
+    yield "normalizer", list(normal), trace
+    material = frame.spans["material"][span].astype(np.int64)
+    trace = {}
+    shading_unit(unit, cosine, lit, material, frame, config, trace)
+    yield "shading_unit", [*unit, cosine, lit.astype(np.int64), material], trace
+
+
+@cocotb.test()
+async def locate_stage(dut):
+    """Run the pixel of where.json through one module; the first stage that differs is written."""
+    folder = Path(os.environ["PHONG_VECTORS"])
+    where = json.loads((folder / "where.json").read_text())
+    frame = read_spans(folder / "spans", DEFAULT)
+    for module, inputs, expected in _vectors(frame, where["pixel"], DEFAULT):
+        if module != where["module"]:
+            continue
+        tb = UnitTB(dut, module)
+        if module == "normalizer":
+            await tb.hold(two_sided=int(frame.two_sided))
+        else:
+            half = (code & ((1 << DEFAULT.half_vector.bits) - 1) for code in frame.half_vector)
+            await tb.hold(**dict(zip(("half_x", "half_z"), half, strict=True)))
+            await tb.write_table(frame)
+        got = await tb.send(*inputs)
+        said = first_difference(module, inputs, expected, got)
+        (folder / "said.json").write_text(json.dumps(said))
+
+
+def locate(frame: Frame, pixel: int, rtl: Path | None = None) -> str:
+    """One line that names the stage at which pixel number `pixel` of `frame` goes wrong in RTL.
+
+    rtl: folder of the design. Builds two benches if they are not there. Raises BuildError.
+    """
+    (BUILD / "run").mkdir(parents=True, exist_ok=True)
+    folder = Path(tempfile.mkdtemp(dir=BUILD / "run"))
+    try:
+        write_spans(folder / "spans", frame, DEFAULT)
+        for module in ("normalizer", "shading_unit"):
+            (folder / "where.json").write_text(json.dumps({"module": module, "pixel": pixel}))
+            top, text = bench_source(module)
+            bench = Bench(top, sources={f"{top}.v": text}, **({"rtl": rtl} if rtl else {}))
+            bench.run("sim.locate", folder, extra_env={"PHONG_VECTORS": str(folder)})
+            said = json.loads((folder / "said.json").read_text())
+            if said:
+                return said
+        return (
+            "normalizer and shading_unit agree with the twin on this pixel's normal: the "
+            "difference is in span_walker, normal_interpolator, register_map or pixel_fifo"
+        )
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)

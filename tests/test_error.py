@@ -1,0 +1,222 @@
+"""The twin against float64 and mpmath, by stage and as a whole, held to the derived bounds."""
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from model import error_budget as budget
+from model import reference
+from model.config import DEFAULT as C
+from model.frame import SPAN_DTYPE, Frame, InputError, MaterialTable, half_vector_codes
+from model.metrics import error_metrics
+from model.twin.inverse_sqrt import inverse_sqrt
+from model.twin.normalizer import normalizer
+from model.twin.phong_pipeline import shade
+from model.twin.reflection import reflection
+from model.twin.specular_power import specular_power
+from model.twin.specular_weight import specular_weight
+
+RNG = np.random.default_rng(75)
+ANGLES = (0.0, 0.3, 1.0, np.pi / 2, 2.5, 3.1, np.pi)
+
+
+def frame_of(angle, n=10.0, cp=(1.0, 1.0, 1.0), d=0.0, weight=1.0, two_sided=False):
+    """A frame with one material and the eye at `angle` (radians) from the light; no spans."""
+    table = MaterialTable.empty(C)
+    table.set(0, cp, d, np.broadcast_to(weight, C.weight_points), n, C)
+    eye = np.array([np.sin(angle), 0, np.cos(angle)])
+    spans = np.zeros(1, SPAN_DTYPE)
+    return Frame(1, 1, half_vector_codes(eye, C), two_sided, (0, 0, 0), table, spans)
+
+
+def normals_near(half_vector, n, count):
+    """Normal codes int64[3, count], half of them where a highlight of exponent n lies."""
+    h = np.array([half_vector[0], 0, half_vector[1]]) / np.hypot(*half_vector)
+    spread = np.where(RNG.random(count) < 0.5, 1 / np.sqrt(n + 1), 1.0)
+    direction = h[:, None] + RNG.normal(size=(3, count)) * spread * 0.7
+    direction /= np.linalg.norm(direction, axis=0)
+    return C.normal.quantize(direction * 2.0 ** -RNG.integers(0, 12, count))
+
+
+def exact(normal, frame):
+    """255 S of normal codes, by the float64 reference, float64[n, 3]."""
+    count = normal.shape[1]
+    table, real = frame.materials, C.coefficient.real
+    return reference.shade(
+        normal.T.astype(float), real(table.ambient)[[0] * count], real(table.diffuse)[[0] * count],
+        real(table.weight)[[0] * count], np.full(count, C.exponent.real(table.exponent[0])),
+        reference.eye_of(frame.half_vector), frame.two_sided,
+    )  # fmt: skip
+
+
+# -- stages ----------------------------------------------------------------------------------------
+
+
+def test_inverse_sqrt_every_operand_within_its_bound():
+    operand = np.arange(C.root_operand.one, 4 * C.root_operand.one)
+    error = C.root.real(inverse_sqrt(operand, C)) * np.sqrt(C.root_operand.real(operand)) - 1
+    assert np.abs(error).max() <= budget.inverse_sqrt(C)
+    assert -np.log2(np.abs(error).max()) > 17.4  # good bits
+
+
+def test_inverse_sqrt_of_zero_is_the_largest_code():
+    assert inverse_sqrt(np.array([0]), C) == C.root.max
+
+
+@pytest.mark.parametrize("shrink", [0, 10, 20, 28])
+def test_normalizer_within_its_bounds_at_any_length(shrink):
+    direction = RNG.normal(size=(3, 200_000))
+    direction /= np.linalg.norm(direction, axis=0)
+    normal = C.normal.quantize(direction * 2.0**-shrink)
+    normal = normal[:, np.abs(normal).max(axis=0) > 0]
+    unit, cosine, _ = normalizer(normal, True, C)
+    true = normal / np.linalg.norm(normal.astype(float), axis=0)
+    assert np.abs(C.cosine.real(cosine) - np.abs(true[2])).max() <= budget.cosine(C)
+    slack = budget.direction(C) + budget.length(C) + C.unit.lsb
+    assert np.abs(C.unit.real(unit) - true).max() <= slack
+
+
+@pytest.mark.parametrize("angle", ANGLES)
+def test_versine_within_its_bound(angle):
+    frame = frame_of(angle)
+    normal = normals_near(frame.half_vector, 100, 200_000)
+    unit, _, _ = normalizer(normal, False, C)
+    v = C.versine.real(reflection(unit, frame.half_vector, C))
+    true = normal / np.linalg.norm(normal.astype(float), axis=0)
+    eye = reference.eye_of(frame.half_vector)
+    v_true = 1 - (2 * true[2] * (eye @ true) - eye[2])
+    inside = v_true < 1 - 1e-4
+    error = np.abs(v - v_true)[inside]
+    assert (error <= budget.versine(v_true[inside], frame.half_vector, C)).all()
+
+
+@pytest.mark.parametrize("n", [1, 1.5, 2, 10, 20, 32, 64, 127.5, 128])
+def test_power_within_its_bound_and_the_specified_one(n):
+    v = np.arange(0, C.versine.one, 3)
+    power = C.power.real(specular_power(v, np.full(len(v), C.exponent.quantize(n)), C))
+    error = np.abs(power - (1 - C.versine.real(v)) ** n).max()
+    assert error <= budget.specular_power(n, C)
+    assert budget.specular_power(n, C) <= (2**-14 if n <= 32 else 2**-12)
+    if n == 20:  # 50 M powers/s, 12.3 k gates, max error 0.00141 (AMM 229-231.1146, 2012)
+        assert error <= 0.00141 / 10
+
+
+def test_power_against_mpmath():
+    v = RNG.integers(0, C.versine.one, 300)
+    n = RNG.integers(C.exponent.one, 128 * C.exponent.one, 300)
+    power = specular_power(v, n, C)
+    for vk, nk, pk in zip(v.tolist(), n.tolist(), power.tolist(), strict=True):
+        true = (1 - mpmath.mpf(vk) / C.versine.one) ** (mpmath.mpf(nk) / C.exponent.one)
+        assert abs(pk / mpmath.mpf(C.power.one) - true) <= budget.specular_power(
+            nk / C.exponent.one, C
+        )
+
+
+def test_weight_within_its_bound():
+    points = C.coefficient.quantize(RNG.random((C.materials, C.weight_points)))
+    cosine = RNG.integers(0, C.cosine.one, 100_000)
+    w = C.weight.real(specular_weight(cosine, np.full(len(cosine), 3), points, C))
+    zn = np.linspace(0, 1, C.weight_points)
+    true = np.interp(C.cosine.real(cosine), zn, C.coefficient.real(points[3]))
+    assert np.abs(w - true).max() <= C.weight.lsb / 2
+
+
+# -- the whole -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("angle", ANGLES)
+@pytest.mark.parametrize("n", [1, 1.5, 10, 32, 128])
+def test_colour_within_the_derived_bound(angle, n):
+    frame = frame_of(angle, n)
+    normal = normals_near(frame.half_vector, n, 100_000)
+    codes = shade(normal, np.zeros(normal.shape[1], np.int64), frame).T
+    bound = budget.bound_lsb(frame)
+    assert np.abs(codes - exact(normal, frame)).max() <= bound
+    assert bound <= 1  # for n <= 32 as specified; n = 128 keeps it too
+
+
+def test_a_steep_w_costs_what_the_budget_says():
+    weight = np.zeros(C.weight_points)
+    weight[C.weight_points // 2 :] = 1
+    frame = frame_of(0.5, 1.0, (0, 0, 0), 0.0, weight)
+    normal = normals_near(frame.half_vector, 1, 200_000)
+    codes = shade(normal, np.zeros(normal.shape[1], np.int64), frame).T
+    bound = budget.bound_lsb(frame)
+    assert np.abs(codes - exact(normal, frame)).max() <= bound
+    assert bound > budget.bound_lsb(frame_of(0.5, 1.0, (0, 0, 0), 0.0, 1.0)) + 0.1
+
+
+def test_nearly_all_colours_are_correctly_rounded():
+    frame = frame_of(0.7, 10, (0.7, 0.5, 0.2), 0.2, 0.5)
+    direction = RNG.normal(size=(3, 400_000))
+    direction[2] = np.abs(direction[2])
+    normal = C.normal.quantize(direction / np.linalg.norm(direction, axis=0))
+    codes = shade(normal, np.zeros(normal.shape[1], np.int64), frame).T
+    assert error_metrics(codes, exact(normal, frame))["correctly_rounded"] >= 0.999
+
+
+component = st.integers(C.normal.min, C.normal.max) | st.integers(-40, 40)
+
+
+@settings(max_examples=300, deadline=None, derandomize=True)
+@given(
+    normal=st.tuples(component, component, component),
+    angle=st.floats(0, np.pi), n=st.floats(1, 128), two_sided=st.booleans(),
+)  # fmt: skip
+def test_any_normal_stays_within_the_bound(normal, angle, n, two_sided):
+    frame = frame_of(angle, n, (1, 0.5, 0), 0.25, two_sided=two_sided)
+    column = np.array(normal, np.int64)[:, None]
+    codes = shade(column, np.zeros(1, np.int64), frame).T
+    assert np.abs(codes - exact(column, frame)).max() <= budget.bound_lsb(frame)
+
+
+def test_the_terminator_is_exact():
+    """One unit of Zn decides, whatever the other components; zero and the zero vector are dark."""
+    frame = frame_of(3.0, 1, (0.2, 0.4, 0.8), 0.5)
+    one = C.normal.one
+    normal = np.array([[one, 0, 1], [one, 0, 0], [one, 0, -1], [0, 0, 0], [0, 0, 1], [0, 0, -1]]).T
+    ambient = C.coefficient.quantize(np.array([0.1, 0.2, 0.4]))
+    dark = np.floor(255 * C.coefficient.real(ambient) + 0.5)
+    codes = shade(normal, np.zeros(6, np.int64), frame).T
+    assert (codes == dark).all(axis=1).tolist() == [False, True, True, True, False, True]
+    frame.two_sided = True
+    codes = shade(normal, np.zeros(6, np.int64), frame).T
+    assert (codes == dark).all(axis=1).tolist() == [False, True, False, True, False, False]
+    assert (codes[0] == codes[2]).all() and (codes[4] == codes[5]).all()
+
+
+def test_colours_saturate():
+    frame = frame_of(0.0, 1, (1, 1, 1), 1.0, 1.0)
+    codes = shade(np.array([[0], [0], [C.normal.one]]), np.zeros(1, np.int64), frame)
+    assert (codes == 255).all()
+
+
+# -- what the reference itself says ----------------------------------------------------------------
+
+
+def test_reference_by_hand():
+    """Light and eye 60 degrees apart, the normal halfway: cos(s) = 1, cos(i) = cos(30)."""
+    eye = np.array([np.sin(np.pi / 3), 0, np.cos(np.pi / 3)])
+    half = np.array([[0.5, 0, np.sqrt(3) / 2]])
+    weight = np.full((1, 3), 0.25)
+    cp = np.array([[0.5, 0.2, 0.0]])
+    got = reference.shade(half * 7, cp * 0.4, cp * 0.6, weight, np.array([9.0]), eye, False)
+    want = 255 * (cp * (0.4 + 0.6 * np.sqrt(3) / 2) + 0.25)
+    assert np.abs(got - want).max() < 1e-10
+
+
+def test_eye_of_half_vector():
+    for angle in ANGLES:
+        eye = reference.eye_of(half_vector_codes([np.sin(angle), 0, np.cos(angle)], C))
+        assert np.abs(eye - [np.sin(angle), 0, np.cos(angle)]).max() < 2**-16
+        assert abs(np.linalg.norm(eye) - 1) < 1e-15
+
+
+@pytest.mark.parametrize(
+    "change", [{"cp": (1.5, 0, 0)}, {"d": -0.1}, {"weight": 2.0}, {"n": 0.5}, {"n": 129.0}]
+)
+def test_materials_out_of_range_are_refused(change):
+    with pytest.raises(InputError, match="material 0: .* is outside"):
+        frame_of(0.0, **change)
