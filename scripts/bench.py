@@ -1,8 +1,8 @@
 """Clocks a second of the simulation and frames a second of the model: `make bench`.
 
 The two ways to simulate run in turns, several times, on the same frame: under cocotb as `make run`
-does it, and in a bare Verilator C++ loop (the same program and bench without cocotb). What counts
-is their ratio; the best of each is taken, since other work on the machine only ever slows down.
+does it, through files, and in a bare Verilator C++ loop that feeds the pipeline from memory. What
+counts is their ratio; the best of each is taken, since other work on the machine only slows down.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from model.config import DEFAULT as CONFIG
 from model.registers import writes
 from model.scene import load_scene
 from model.scene_to_spans import front_end
-from model.spans import write_spans
+from model.spans import pack, record_bits, span_fields
 from model.twin.phong_pipeline import BLOCK, interpolate, shade
 from model.twin.span_walker import span_walker
 from sim.build import BUILD, Bench
-from sim.run_frame import Job, body_offset, simulate_jobs
+from sim.run_frame import Job, simulate_jobs
 
 ROUNDS = 5
 SCENE, SIZE = "teapot", (640, 480)
@@ -36,18 +36,22 @@ COPIES = 8  # frames a measurement, so that it lasts long enough
 
 
 def bare(bench: Bench, frame, folder: Path) -> float:
-    """Clocks a second of the bare loop on `frame`."""
+    """Clocks a second of the bare loop of sim/main.cpp (its file format too) on `frame`."""
+    words = record_bits(CONFIG) // 32
+    spans = pack(frame.spans, CONFIG)
+    spans = np.frombuffer(spans, ">u4").reshape(-1, words)[:, ::-1]
+    written = writes(frame, CONFIG)
+    last_bit = span_fields(CONFIG)[-1].lsb
     pixels = int(frame.spans["length"].sum())
-    write_spans(folder / "0.spans", frame, CONFIG)
-    lines = "".join(f"{address:x} {word:x}\n" for address, word in writes(frame, CONFIG))
-    (folder / "writes").write_text(lines)
+    head = [len(written)]
+    for address, word in written:
+        head += [address, word & 0xFFFFFFFF, word >> 32]
+    head += [len(spans), words, last_bit, pixels]
+    file = folder / "bare"
+    file.write_bytes(np.array(head, "<u4").tobytes() + spans.astype("<u4").tobytes())
     said = subprocess.run(
-        [
-            bench.make() / "frame_bench", "--bare", "writes", "+job=0",
-            f"+skip={body_offset(folder / '0.spans')}", f"+spans={len(frame.spans)}",
-            f"+pixels={pixels}",
-        ],
-        cwd=folder, check=True, text=True, stdout=subprocess.PIPE,
+        [bench.make() / "phong_pipeline", "--bare", file],
+        check=True, text=True, stdout=subprocess.PIPE,
     ).stdout  # fmt: skip
     clocks, seconds = re.search(r"clocks (\d+) seconds ([\d.]+)", said).groups()
     return int(clocks) / float(seconds)
@@ -82,13 +86,14 @@ def main() -> int:
     frame = front_end(load_scene(SCENE, SIZE)).frame
     frame.spans = np.tile(frame.spans, COPIES)
     frame.spans["last"][:-1] = False
-    bench = Bench("frame_bench", CONFIG)
+    pipeline, bench = Bench("phong_pipeline", CONFIG), Bench("frame_bench", CONFIG)
+    pipeline.make()
     bench.make()
     rates: dict[str, list[float]] = {"bare": [], "cocotb": []}
     with tempfile.TemporaryDirectory(dir=BUILD) as name:
         for k in range(ROUNDS):
             console.print(f"round {k + 1} of {ROUNDS} ...")
-            rates["bare"].append(bare(bench, frame, Path(name)))
+            rates["bare"].append(bare(pipeline, frame, Path(name)))
             rates["cocotb"].append(under_cocotb(bench, frame))
     pixels = SIZE[0] * SIZE[1]
     seconds = model_seconds(pixels)

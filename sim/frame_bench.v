@@ -20,7 +20,6 @@ module frame_bench #(
 
     // the job: files <job>.spans (records from byte `skip` on) and <job>.pixels
     input wire        start,
-    input wire        autostart,    // start at once, without cocotb: +job, +skip, +spans, +pixels
     input wire [31:0] job,
     input wire [31:0] skip,
     input wire [31:0] spans,        // records in the file
@@ -71,7 +70,6 @@ module frame_bench #(
   integer in_file, out_file, got;
   reg [RECORD_BITS-1:0] record;
   reg [31:0] spans_read, clocks, entered, waited;
-  reg [31:0] job_now, skip_now, spans_now, pixels_now;
   reg accepted;  // a span of this job was accepted
   reg [31:0] random;
 
@@ -96,21 +94,11 @@ module frame_bench #(
     if (reset) begin
       running <= 0;
       s_valid <= 0;
-    end else if (!running & (start | autostart)) begin
-      job_now = job;
-      skip_now = skip;
-      spans_now = spans;
-      pixels_now = pixels;
-      if (autostart) begin
-        got = $value$plusargs("job=%d", job_now);
-        got = $value$plusargs("skip=%d", skip_now);
-        got = $value$plusargs("spans=%d", spans_now);
-        got = $value$plusargs("pixels=%d", pixels_now);
-      end
-      $sformat(name, "%0d.spans", job_now);
+    end else if (!running & start) begin
+      $sformat(name, "%0d.spans", job);
       in_file = $fopen(name, "rb");
-      got = $fseek(in_file, skip_now, 0);
-      $sformat(name, "%0d.pixels", job_now);
+      got = $fseek(in_file, skip, 0);
+      $sformat(name, "%0d.pixels", job);
       out_file = $fopen(name, "wb");
       spans_read <= 0;
       s_valid <= 0;
@@ -130,7 +118,7 @@ module frame_bench #(
     end else if (running) begin
       // ---- spans in ----
       if (!s_valid | s_ready) begin
-        if (spans_read < spans_now & (idle_chance == 0 | random[15:8] >= idle_chance)) begin
+        if (spans_read < spans & (idle_chance == 0 | random[15:8] >= idle_chance)) begin
           got = $fread(record, in_file);
           s_valid <= 1;
           s_data <= record[SPAN_BITS-1:0];
@@ -151,15 +139,15 @@ module frame_bench #(
       if (accepted) begin
         cycles <= cycles + 1;
         if (latency == 0 & m_valid) latency <= cycles + 1;
-        if (!dut.pixel_valid & entered < pixels_now) stall_cycles <= stall_cycles + 1;
+        if (!dut.pixel_valid & entered < pixels) stall_cycles <= stall_cycles + 1;
       end
       entered <= entered + {31'b0, dut.pixel_valid};
       illegal_spans <= illegal_spans + {31'b0, illegal_span};
 
       waited <= take ? 0 : waited + 1;
-      if (pixel_count_next == pixels_now | waited == PATIENCE
+      if (pixel_count_next == pixels | waited == PATIENCE
           | (stop_after != 0 & clocks == stop_after)) begin
-        complete <= pixel_count_next == pixels_now;
+        complete <= pixel_count_next == pixels;
         running <= 0;
         s_valid <= 0;
         $fclose(in_file);

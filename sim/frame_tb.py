@@ -16,7 +16,7 @@ class FrameTB:
 
     def __init__(self, dut):
         self.dut = dut
-        for name in ("write_enable", "start", "autostart", "stop_after", "idle_chance"):
+        for name in ("write_enable", "start", "stop_after", "idle_chance"):
             getattr(dut, name).value = 0
         dut.stall_chance.value = 0
         dut.seed.value = 1

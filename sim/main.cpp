@@ -5,8 +5,7 @@
 // as with its own main program. Time stands still meanwhile. A trace turns the fast way off.
 //
 // Options: --trace FILE   write a VCD (in builds with a trace)
-//          --bare WRITES  no cocotb at all (for `make bench`): do the register writes in the file
-//                         WRITES (address and word in hexadecimal, one a line), then one job
+//          --bare FILE   no cocotb at all (for `make bench`), see run_bare
 
 #include <chrono>
 #include <cinttypes>
@@ -14,6 +13,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <vector>
 
 #include "Vtop.h"
 #include "verilated.h"
@@ -55,32 +55,64 @@ static void run_fast(Top &top) {
     std::printf("clocks %" PRIu64 " seconds %.6f\n", clocks, seconds.count());
 }
 
-// Without cocotb: registers, one job, no callbacks.
+// The bare loop: phong_pipeline fed from memory, its pixels taken and added up; no files, no
+// cocotb. FILE holds 32-bit words: number of register writes, (address, word low, word high) each,
+// number of spans, 32-bit words a span, the place of the last-of-frame bit, pixels; then the spans.
 template <class Top>
-static int run_bare(Top &top, const char *writes) {
-    if constexpr (requires { top.autostart; }) {
-        std::FILE *file = std::fopen(writes, "r");
+static int run_bare(Top &top, const char *name) {
+    if constexpr (requires { top.s_axis_tdata; }) {
+        std::vector<uint32_t> data;
+        std::FILE *file = std::fopen(name, "rb");
         if (!file) return 2;
+        for (uint32_t word; std::fread(&word, sizeof word, 1, file) == 1;) data.push_back(word);
+        std::fclose(file);
+        const uint32_t *next = data.data();
+        top.s_axis_tvalid = 0;
+        top.m_axis_tready = 1;
         top.reset = 1;
         clock(top);
+        clock(top);
         top.reset = 0;
-        uint64_t address, word;
         top.write_enable = 1;
-        while (std::fscanf(file, "%" SCNx64 " %" SCNx64, &address, &word) == 2) {
-            top.write_address = address;
-            top.write_word = word;
+        for (uint32_t writes = *next++; writes; --writes, next += 3) {
+            top.write_address = next[0];
+            top.write_word = next[1] | uint64_t{next[2]} << 32;
             clock(top);
         }
-        std::fclose(file);
         top.write_enable = 0;
-        top.autostart = 1;
         clock(top);
-        top.autostart = 0;
-        run_fast(top);
+        uint32_t spans = next[0];
+        const uint32_t words = next[1], last_bit = next[2], pixels = next[3];
+        next += 4;
+        uint64_t clocks = 0, sum = 0;
+        const auto begin = std::chrono::steady_clock::now();
+        for (uint32_t count = 0; count < pixels; ++clocks) {
+            top.s_axis_tvalid = spans != 0;
+            if (spans) {
+                std::memcpy(&top.s_axis_tdata, next, sizeof top.s_axis_tdata);
+                top.s_axis_tlast = next[last_bit / 32] >> last_bit % 32 & 1;
+            }
+            top.clk = 0;
+            top.eval();
+            const bool taken = top.s_axis_tvalid && top.s_axis_tready;
+            if (top.m_axis_tvalid) {
+                sum += top.m_axis_tdata;
+                ++count;
+            }
+            top.clk = 1;
+            top.eval();
+            if (taken) {
+                next += words;
+                --spans;
+            }
+        }
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+        std::printf("clocks %" PRIu64 " seconds %.6f sum %" PRIu64 "\n", clocks, seconds.count(),
+                    sum);
         top.final();
-        return top.complete ? 0 : 1;
+        return 0;
     } else {
-        return 2;  // not a bench of frames
+        return 2;  // not the pipeline
     }
 }
 
@@ -143,16 +175,16 @@ static void run_cocotb(Vtop &top, const char *trace_file) {
 }
 
 int main(int argc, char **argv) {
-    const char *writes = nullptr;
+    const char *bare_file = nullptr;
     const char *trace_file = nullptr;
     for (int i = 1; i + 1 < argc; ++i) {
-        if (!std::strcmp(argv[i], "--bare")) writes = argv[++i];
+        if (!std::strcmp(argv[i], "--bare")) bare_file = argv[++i];
         else if (!std::strcmp(argv[i], "--trace")) trace_file = argv[++i];
     }
     Verilated::commandArgs(argc, argv);
     Verilated::fatalOnVpiError(false);
     const std::unique_ptr<Vtop> top(new Vtop(""));
-    if (writes) return run_bare(*top, writes);
+    if (bare_file) return run_bare(*top, bare_file);
     run_cocotb(*top, trace_file);
     return Verilated::threadContextp()->errorCount() > 0 ? 1 : 0;
 }

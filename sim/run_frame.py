@@ -83,10 +83,13 @@ def body_offset(path: Path) -> int:
         return file.tell()
 
 
-def simulate_jobs(jobs: list[Job], config: Config = DEFAULT, bench: Bench | None = None):
+def simulate_jobs(
+    jobs: list[Job], config: Config = DEFAULT, bench: Bench | None = None,
+    waves: Path | None = None,
+):  # fmt: skip
     """Run `jobs` one after the other in one simulation. Returns a list of SimResult.
 
-    Raises BuildError, SimulationError.
+    waves: file for a VCD, if `bench` was built with a trace. Raises BuildError, SimulationError.
     """
     bench = bench or Bench("frame_bench", config)
     begin = time.perf_counter()
@@ -111,7 +114,11 @@ def simulate_jobs(jobs: list[Job], config: Config = DEFAULT, bench: Bench | None
             })  # fmt: skip
         (folder / "jobs.json").write_text(json.dumps(described))
         try:
-            bench.run("sim.frame_jobs", folder, extra_env={"PHONG_JOBS": str(folder)})
+            arguments = ["--trace", str(waves.resolve())] if waves else []
+            bench.run(
+                "sim.frame_jobs", folder, test_args=arguments,
+                extra_env={"PHONG_JOBS": str(folder)},
+            )  # fmt: skip
             said = json.loads((folder / "counters.json").read_text())
         except (OSError, RuntimeError, SystemExit) as error:
             log = folder / "sim.log"

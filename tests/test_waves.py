@@ -1,0 +1,22 @@
+import re
+
+from scripts import waves
+from sim.build import BUILD
+
+
+def test_every_signal_of_the_save_file_is_in_the_waveform(capsys):
+    assert waves.main(["normalizer"]) == 0
+    vcd = BUILD / "waves" / "normalizer.vcd"
+    has = {f"{scope.path}.{signal}" for scope in waves.scopes(vcd) for signal in scope.signals}
+    save = vcd.with_suffix(".gtkw").read_text()
+    shown = re.findall(r"^(frame_bench\..*)$", save, re.MULTILINE)
+    assert set(shown) <= has
+    for signal in ("clk", "s_ready", "u_normalizer.unit_x[17:0]", "u_normalizer.sum_p11[35:0]"):
+        assert any(name.endswith(f".{signal}") for name in shown), signal
+    assert any("gen_component[2].mantissa_p7" in name for name in shown)
+
+
+def test_an_unknown_module_is_named_with_the_known_ones(capsys):
+    assert waves.main(["phong"]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and "`phong`" in said and "normalizer" in said
