@@ -13,7 +13,7 @@ PYTHON := .venv/bin/python
 quote = '$(subst ','\'',$(1))'
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test lint bench waves clean
+.PHONY: help setup run test lint results bench waves clean
 
 help: ## this list
 	@echo 'make run      render SCENE through the RTL and the model, compare, write pictures and report'
@@ -25,6 +25,7 @@ help: ## this list
 	@echo '                SPANS=FILE      run a span file (see model/spans.py) in place of a scene'
 	@echo 'make test     lint, then all tests'
 	@echo 'make lint     Verilator -Wall and Verible on rtl/ and sim/, Ruff on Python'
+	@echo 'make results  the README'"'"'s table of results, measured anew'
 	@echo 'make bench    clocks a second of the simulation, frames a second of the model'
 	@echo 'make waves    MODULE=phong_pipeline: a waveform of a short run, grouped for GTKWave'
 	@echo 'make setup    install the pinned packages into .venv; the other targets do this by themselves'
@@ -46,6 +47,9 @@ lint: setup
 
 bench: setup
 	@$(PYTHON) -m scripts.bench
+
+results: setup
+	@$(PYTHON) -m scripts.results
 
 waves: setup
 	@$(PYTHON) -m scripts.waves $(call quote,$(MODULE))

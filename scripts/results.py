@@ -1,0 +1,86 @@
+"""The table of results in the README, measured anew: `make results`.
+
+Every bundled scene at every promised size through RTL, twin and reference; one row a scene.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+
+from rich.console import Console
+
+from model import error_budget, metrics, reference, twin
+from model.config import DEFAULT as CONFIG
+from model.scene import bundled_scenes, load_scene
+from model.scene_to_spans import front_end
+from sim.run_frame import Job, SimResult, simulate_jobs
+
+SIZES = ((512, 512), (640, 480), (1920, 1080))
+CLOCK_HZ = 200e6
+HEADER = """\
+| scene | pixels | spans | RTL ≠ model | largest error | bound | rounded right | cycles a pixel | \
+frames/s |
+|---|--:|--:|--:|--:|--:|--:|--:|--:|"""
+
+
+@dataclass
+class Result:
+    """One scene at one size: what the RTL did, compared with twin, reference and budget."""
+
+    simulation: SimResult
+    spans: int
+    mismatches: int
+    first: metrics.Mismatch | None
+    error: dict
+    bound_lsb: float
+
+    @property
+    def max_fps(self) -> float:
+        """Frames a second at CLOCK_HZ."""
+        return CLOCK_HZ / self.simulation.cycles
+
+
+def measure(scene: str) -> list[Result]:
+    """Run `scene` at SIZES, in one simulation."""
+    frames = [front_end(load_scene(scene, size)).frame for size in SIZES]
+    results = []
+    for frame, simulation in zip(frames, simulate_jobs([Job(f) for f in frames]), strict=True):
+        compared = metrics.compare(twin.render(frame), simulation.pixels)
+        error = metrics.error_metrics(simulation.pixels.rgb, reference.render(frame))
+        results.append(
+            Result(
+                simulation, len(frame.spans), compared.mismatches + simulation.extra_pixels,
+                compared.first, error, error_budget.bound_lsb(frame, CONFIG),
+            )
+        )  # fmt: skip
+    return results
+
+
+def row(scene: str, results: list[Result]) -> str:
+    """The README's row of a scene: the largest size's numbers, the worst of all sizes' errors."""
+    big = results[-1]
+    pixels = len(big.simulation.pixels.x)
+    fps = ", ".join(f"{result.max_fps:.0f}" for result in results)
+    return (
+        f"| {scene} | {pixels} | {big.spans} | {sum(r.mismatches for r in results)} "
+        f"| {max(r.error['max_lsb'] for r in results):.3f} "
+        f"| {max(r.bound_lsb for r in results):.3f} "
+        f"| {100 * min(r.error['correctly_rounded'] for r in results):.2f} % "
+        f"| {big.simulation.cycles / pixels:.4f} | {fps} |"
+    )
+
+
+def main() -> int:
+    """Print the table; returns the exit code."""
+    console = Console(stderr=True)
+    rows = []
+    for scene in bundled_scenes():
+        console.print(f"{scene} ...")
+        rows.append(row(scene, measure(scene)))
+    print("\n".join([HEADER, *rows]))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

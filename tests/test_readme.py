@@ -1,0 +1,69 @@
+"""The README's numbers and examples, held to what they are about."""
+
+import re
+
+import numpy as np
+
+from model import error_budget, registers, spans
+from model.config import DEFAULT as C
+from sim.build import ROOT, RTL
+from sim.latency import latencies
+from tests.test_error import frame_of
+
+README = (ROOT / "README.md").read_text()
+
+
+def test_latencies():
+    of = latencies()
+    assert f"{of['normalizer']} clocks       {of['shading_unit']} clocks" in README
+    parts = {"reflection": 0, "specular_power": 0, "specular_weight": 0, "inverse_sqrt": 0}
+    for block in parts:
+        assert f"{block} ({of[block]})" in README, block
+    assert f"colour_channel ×3 ({of['colour_channel']})" in README
+    assert f"the first comes {of['pixel'] + 3} clocks after its span" in README
+
+
+def test_bounds():
+    worst = {n: max(error_budget.bound_lsb(frame_of(a, n)) for a in np.linspace(0, np.pi, 33))
+             for n in (32, 128)}  # fmt: skip
+    said = re.search(r"at most (0\.\d+) LSB of 8 bits for n ≤ 32 and (0\.\d+) for n = 128", README)
+    for n, text in zip((32, 128), said.groups(), strict=True):
+        assert worst[n] <= float(text) <= worst[n] + 0.01, n
+    jump = np.where(np.arange(C.weight_points) < C.weight_points // 2, 0.0, 1.0)
+    more = error_budget.bound_lsb(frame_of(0.5, 32, weight=jump)) - worst[32]
+    text = re.search(r"a jump of W from 0 to 1 adds (0\.\d+)", README)[1]
+    assert more <= float(text) <= more + 0.01
+
+
+def test_formats():
+    last = spans.span_fields(C)[-2]
+    assert last.name == "material" and f"material ({last.bits} bits)" in README
+    assert f"`write_address` of {registers.address_bits(C)} bits" in README
+    assert f"`write_word` of {registers.word_bits(C)}" in README
+    for name, fmt in (("n", C.exponent), ("hx, hz", C.half_vector)):
+        assert f"{name} ({fmt})" in README
+
+
+def test_the_multipliers_are_counted():
+    """19 DSP multipliers in the default build, all of at most 18 x 18 bits."""
+    per_instance = {"normalizer": {"gen_component": 3}, "shading_unit": {"gen_channel": 3}}
+
+    def count(module):
+        text = (RTL / f"{module}.v").read_text()
+        total = 0
+        for child, name in re.findall(r"^\s*(\w+)(?:\s*#\(.*?\))?\s+(u_\w+) \(", text, re.M | re.S):
+            times = 1
+            for block, copies in per_instance.get(module, {}).items():
+                inside = text[text.index("begin : " + block) : text.index("endgenerate")]
+                times = copies if f" {name} (" in inside else times
+            total += times * (1 if child == "multiplier" else count(child))
+        return total
+
+    assert f"The default build has {count('phong_pipeline')} multipliers" in README
+    assert count("phong_pipeline") <= 19
+
+
+def test_the_python_example_runs(capsys):
+    code = re.search(r"```python\n(.*?)```", README, re.S)[1]
+    exec(compile(code, "README.md", "exec"), {})
+    assert float(capsys.readouterr().out) < 0.6
