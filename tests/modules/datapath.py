@@ -12,7 +12,6 @@ import numpy as np
 
 from model.config import DEFAULT as C
 from model.frame import SPAN_DTYPE, Frame, MaterialTable
-from model.registers import writes
 from model.twin.inverse_sqrt import inverse_sqrt
 from model.twin.normalizer import normalizer
 from model.twin.reflection import reflection
@@ -171,7 +170,7 @@ async def specular_power_latency(dut):
     await tb.check_latency([half, 2 * one], [half, one], "specular_power.bypass")
 
 
-# -- specular_weight, shading_unit: with a material table --------------------------------------------
+# -- specular_weight, shading_unit: with a material table -----------------------------------------
 
 
 def _frame(rng) -> Frame:
@@ -189,36 +188,13 @@ def _frame(rng) -> Frame:
     return Frame(1, 1, (int(hx), int(hz)), False, (0, 0, 0), table, spans)
 
 
-async def _write(tb: UnitTB, frame: Frame):
-    """Write the material table as rtl/register_map.v decodes it."""
-    index_bits = C.weight_index_bits
-    kind = 1 << (C.material_bits + index_bits)
-    has = {port for port, _ in __import__("sim.units", fromlist=["MODULES"]).MODULES[MODULE].held}
-    for address, word in writes(frame, C):
-        field = address & ((1 << index_bits) - 1)
-        strobes = dict.fromkeys(
-            ("write_enable", "write_weight", "write_exponent", "write_ambient", "write_diffuse"), 0
-        )
-        if not address & kind:
-            strobes["write_enable"] = strobes["write_weight"] = 1
-        elif field < 3:
-            strobes["write_ambient"] = 1 << field
-        elif field < 6:
-            strobes["write_diffuse"] = 1 << (field - 3)
-        elif field == 6:
-            strobes["write_exponent"] = 1
-        strobes = {port: value for port, value in strobes.items() if port in has}
-        await tb.hold(write_address=address & (kind - 1), write_word=word, **strobes)
-    await tb.hold(**dict.fromkeys(strobes, 0))
-
-
 @_only("specular_weight")
 async def specular_weight_random(dut):
     """All materials, all intervals, the ends of Zn."""
     tb = UnitTB(dut, MODULE)
     rng = np.random.default_rng(SEED)
     frame = _frame(rng)
-    await _write(tb, frame)
+    await tb.write_table(frame, C)
     cosine = _edges(C.cosine, rng, RANDOM)
     material = rng.integers(0, C.materials, RANDOM)
     trace = {}
@@ -232,7 +208,7 @@ async def shading_unit_random(dut):
     tb = UnitTB(dut, MODULE)
     rng = np.random.default_rng(SEED)
     frame = _frame(rng)
-    await _write(tb, frame)
+    await tb.write_table(frame, C)
     await tb.hold(half_x=frame.half_vector[0], half_z=frame.half_vector[1])
     direction = rng.normal(size=(3, RANDOM))
     direction[0] += 0.5
