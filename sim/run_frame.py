@@ -85,11 +85,12 @@ def body_offset(path: Path) -> int:
 
 def simulate_jobs(
     jobs: list[Job], config: Config = DEFAULT, bench: Bench | None = None,
-    waves: Path | None = None,
+    waves: Path | None = None, power_up: int | None = None,
 ):  # fmt: skip
     """Run `jobs` one after the other in one simulation. Returns a list of SimResult.
 
-    waves: file for a VCD, if `bench` was built with a trace. Raises BuildError, SimulationError.
+    waves: file for a VCD, if `bench` was built with a trace. power_up: seed of random contents of
+    all registers at power-up, in place of zeros. Raises BuildError, SimulationError.
     """
     bench = bench or Bench("frame_bench", config)
     begin = time.perf_counter()
@@ -115,6 +116,8 @@ def simulate_jobs(
         (folder / "jobs.json").write_text(json.dumps(described))
         try:
             arguments = ["--trace", str(waves.resolve())] if waves else []
+            if power_up is not None:
+                arguments += ["+verilator+rand+reset+2", f"+verilator+seed+{power_up}"]
             bench.run(
                 "sim.frame_jobs", folder, test_args=arguments,
                 extra_env={"PHONG_JOBS": str(folder)},

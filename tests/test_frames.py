@@ -47,6 +47,14 @@ def test_an_empty_frame_ends(tmp_path):
     assert result.complete and len(result.pixels.x) == 0
 
 
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_no_pixel_depends_on_what_registers_hold_at_power_up(seed):
+    frame = front_end(load_scene("still_life")).frame
+    result = simulate_jobs([Job(frame)], power_up=seed)[0]
+    assert metrics.compare(twin.render(frame), result.pixels).mismatches == 0, f"seed {seed}"
+    assert result.stall_cycles == 0 and result.illegal_spans == 0
+
+
 def test_a_broken_design_fails_and_is_located(tmp_path):
     """The check can fail: 1 - cos(s) from p*q in place of p*p, and the stage is named."""
     rtl = tmp_path / "rtl"
