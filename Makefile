@@ -13,7 +13,7 @@ PYTHON := .venv/bin/python
 quote = '$(subst ','\'',$(1))'
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test lint results bench waves clean
+.PHONY: help setup run test lint results bench coverage activity waves mutate clean
 
 help: ## this list
 	@echo 'make run      render SCENE through the RTL and the model, compare, write pictures and report'
@@ -27,7 +27,10 @@ help: ## this list
 	@echo 'make lint     Verilator -Wall and Verible on rtl/ and sim/, Ruff on Python'
 	@echo 'make results  the README'"'"'s table of results, measured anew'
 	@echo 'make bench    clocks a second of the simulation, frames a second of the model'
+	@echo 'make coverage line, branch and toggle coverage of rtl/ by the module and frame tests'
+	@echo 'make activity register toggles a pixel of every bundled scene'
 	@echo 'make waves    MODULE=phong_pipeline: a waveform of a short run, grouped for GTKWave'
+	@echo 'make mutate   change each constant of rtl/ by one and run the module tests: slow; FILES=, SAMPLE='
 	@echo 'make setup    install the pinned packages into .venv; the other targets do this by themselves'
 	@echo 'make clean    remove build/ (.venv stays)'
 
@@ -51,8 +54,18 @@ bench: setup
 results: setup
 	@$(PYTHON) -m scripts.results
 
+coverage: setup
+	@$(PYTHON) -m scripts.coverage
+
+activity: setup
+	@$(PYTHON) -m scripts.activity
+
 waves: setup
 	@$(PYTHON) -m scripts.waves $(call quote,$(MODULE))
+
+mutate: setup
+	@$(PYTHON) -m scripts.mutate_constants $(if $(FILES),--files $(FILES)) \
+	  $(if $(SAMPLE),--sample $(SAMPLE))
 
 clean:
 	@rm -rf build .hypothesis .ruff_cache

@@ -36,7 +36,7 @@ module pixel_fifo #(
   localparam SLOTS_NEEDED = LATENCY + 3;
   localparam SLOTS = 16 * ((SLOTS_NEEDED + 15) / 16);  // small RAMs come in sixteens
   localparam SLOT_BITS = $clog2(SLOTS);
-  localparam [SLOT_BITS-1:0] LAST_SLOT = SLOTS - 1;
+  localparam [SLOT_BITS-1:0] LAST_SLOT = SLOTS[SLOT_BITS-1:0] - 1'b1;
   localparam COUNT_BITS = $clog2(SLOTS + 1);
   localparam [COUNT_BITS-1:0] ALL = SLOTS;
 

@@ -127,13 +127,16 @@ class Bench(Verilator):
         rtl: Path = RTL,
         trace: bool = False,
         coverage: Path | None = None,
+        lint: bool = True,
     ):
         """A bench with top level `top`: sim/<top>.v, a module of the design, or a text in
         `sources` (file name: text).
 
         rtl: folder of the design (a mutated copy, say). trace: able to write a VCD.
-        coverage: folder for the coverage counts of each run.
+        coverage: folder for the coverage counts of each run. lint: whether warnings are errors
+        (not in a netlist).
         """
+        self._warnings = ["-Wall"] if lint else ["-Wno-lint", "-Wno-style", "-Wno-fatal"]
         super().__init__()
         self._top, self._config, self._rtl, self._trace = top, config, rtl, trace
         self._texts = dict(sources or {})
@@ -175,7 +178,7 @@ class Bench(Verilator):
                 _VERILATOR_ROOT / "bin" / "verilator", "--cc", "--vpi", "--prefix", "Vtop",
                 "--top-module", self._top, "--Mdir", self.folder, "-O3",
                 "--x-assign", "unique", "--x-initial", "unique", "--no-timing",
-                "--output-split", "0", "--public-depth", "1", "-Wall",
+                "--output-split", "0", "--public-depth", "1", *self._warnings,
                 *(["--trace"] if self._trace else []),
                 *(["--coverage-line", "--coverage-toggle"] if self._coverage else []),
                 f"-I{self._include}", f"-I{self._rtl}", f"-I{SIM}", f"-I{self.folder}",

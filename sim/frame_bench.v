@@ -33,7 +33,7 @@ module frame_bench #(
     output reg        complete,       // all pixels came
     output reg [31:0] cycles,         // from the first span accepted to the last pixel taken
     output reg [31:0] latency,        // from the first span accepted to the first pixel offered
-    output reg [31:0] stall_cycles,   // of `cycles`: no pixel left the interpolators, work left
+    output reg [31:0] stall_cycles,   // of `cycles`, after the first pixel: no pixel was taken
     output reg [31:0] pixel_count,
     output reg [31:0] illegal_spans,
     output reg [31:0] extra_pixels    // pixels after the last one
@@ -69,7 +69,7 @@ module frame_bench #(
   reg [255:0] name;
   integer in_file, out_file, got;
   reg [RECORD_BITS-1:0] record;
-  reg [31:0] spans_read, clocks, entered, waited;
+  reg [31:0] spans_read, clocks, waited;
   reg accepted;  // a span of this job was accepted
   reg [31:0] random;
 
@@ -107,7 +107,6 @@ module frame_bench #(
       complete <= 0;
       accepted <= 0;
       clocks <= 0;
-      entered <= 0;
       cycles <= 0;
       latency <= 0;
       stall_cycles <= 0;
@@ -139,9 +138,8 @@ module frame_bench #(
       if (accepted) begin
         cycles <= cycles + 1;
         if (latency == 0 & m_valid) latency <= cycles + 1;
-        if (!dut.pixel_valid & entered < pixels) stall_cycles <= stall_cycles + 1;
+        if (pixel_count != 0 & !take) stall_cycles <= stall_cycles + 1;
       end
-      entered <= entered + {31'b0, dut.pixel_valid};
       illegal_spans <= illegal_spans + {31'b0, illegal_span};
 
       waited <= take ? 0 : waited + 1;

@@ -33,6 +33,7 @@ class FrameTB:
 
     async def write(self, writes):
         """Write (address, word) pairs through the register port, one a clock."""
+        await FallingEdge(self.dut.clk)
         self.dut.write_enable.value = 1
         for address, word in writes:
             self.dut.write_address.value = address

@@ -30,8 +30,8 @@ class SimResult:
     """What a frame did in simulation; cycles as counted there (see sim/frame_bench.v).
 
     pixels: as they came. cycles: clocks from the first span accepted to the last pixel taken.
-    latency_cycles: to the first pixel offered. stall_cycles: of `cycles`, those in which no pixel
-    left the interpolators before the last had. extra_pixels: pixels after the last.
+    latency_cycles: to the first pixel offered. stall_cycles: of `cycles`, those after the first
+    pixel in which none was taken. extra_pixels: pixels after the last.
     build_s, simulate_s: seconds.
     """
 

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import xml.etree.ElementTree as ET
 
+import numpy as np
 import pytest
 
+from model.config import DEFAULT as C
+from model.spans import illegal_spans
+from model.twin import render
+from sim import primitives
 from sim.build import Bench
+from sim.run_frame import Job, simulate_jobs
 from sim.units import bench_source
+from tests.modules.frames import random_frame
 
 SEED = 75
 DATAPATH = (
@@ -28,13 +36,14 @@ def outcome(results, folder) -> list[str]:
 
 def run(bench: Bench, module: str, tests: str, folder) -> None:
     """Run the cocotb tests `tests` of `module` in `bench`."""
-    results = bench.run(
-        tests, folder, plusargs=[f"+dir={folder}"], seed=SEED,
-        extra_env={
-            "PHONG_MODULE": module, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)
-        },
-    )  # fmt: skip
-    failures = outcome(results, folder)
+    with contextlib.suppress(SystemExit):  # how the runner says inside pytest that a test failed
+        bench.run(
+            tests, folder, plusargs=[f"+dir={folder}"], seed=SEED,
+            extra_env={
+                "PHONG_MODULE": module, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)
+            },
+        )  # fmt: skip
+    failures = outcome(folder / "results.xml", folder)
     if failures:
         pytest.fail("\n".join(failures), pytrace=False)
 
@@ -43,3 +52,53 @@ def run(bench: Bench, module: str, tests: str, folder) -> None:
 def test_datapath(module, tmp_path):
     top, text = bench_source(module)
     run(Bench(top, sources={f"{top}.v": text}), module, "tests.modules.datapath", tmp_path)
+
+
+def test_primitives(tmp_path):
+    bench = Bench(primitives.TOP, sources={f"{primitives.TOP}.v": primitives.source()})
+    run(bench, "primitives", "tests.modules.primitives", tmp_path)
+
+
+def test_control(tmp_path):
+    run(Bench("control_bench"), "control", "tests.modules.control", tmp_path)
+
+
+def test_phong_pipeline(tmp_path):
+    run(Bench("pipeline_bench"), "phong_pipeline", "tests.modules.phong_pipeline", tmp_path)
+
+
+def same_pixels(got, frame) -> bool:
+    want = render(frame, C)
+    pairs = ((got.x, want.x), (got.y, want.y), (got.rgb, want.rgb), (got.last, want.last))
+    return all(np.array_equal(a, b) for a, b in pairs)
+
+
+def test_whole_frames_in_all_regimes():
+    frame, dot = random_frame(SEED, 1000, 40), random_frame(SEED, 1, 1)
+    frame.spans["step"][::50, 1] = C.normal.max  # most of these leave the format
+    illegal = int(illegal_spans(frame, C).sum())
+    pixels = int(frame.spans["length"].sum())
+    chances = (0, 64, 200)
+    jobs = [Job(dot)]
+    jobs += [Job(frame, idle=i, stall=s, seed=SEED + i + s) for i in chances for s in chances]
+    # Broken off in the middle, with and without pixels waiting, then whole after a reset.
+    for clocks, stall in ((700, 0), (3001, 200), (90, 255)):
+        jobs += [Job(frame, stop_after=clocks, stall=stall), Job(frame, reset_first=True)]
+    results = simulate_jobs(jobs)
+    overhead = results[0].cycles - 1
+    for job, result in zip(jobs, results, strict=True):
+        what = f"idle {job.idle}, stall {job.stall}, {len(job.frame.spans)} spans, seed {SEED}"
+        if job.stop_after:
+            assert not result.complete, what
+            continue
+        assert result.complete and result.extra_pixels == 0, what
+        if not same_pixels(result.pixels, job.frame):
+            pytest.fail(f"module phong_pipeline, whole frame: pixels differ; {what}")
+        assert result.latency_cycles == results[0].latency_cycles, what
+        assert result.illegal_spans == (illegal if job.frame is frame else 0), what
+        count = pixels if job.frame is frame else 1
+        if job.idle == job.stall == 0:
+            assert (result.cycles, result.stall_cycles) == (count + overhead, 0), what
+        else:
+            assert result.cycles > count + overhead and result.stall_cycles > 0, what
+            assert result.cycles == count + overhead + result.stall_cycles or job.stall, what

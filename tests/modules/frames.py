@@ -1,0 +1,33 @@
+"""Random frames for the tests of whole pipelines."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from model.config import DEFAULT as C
+from model.frame import SPAN_DTYPE, Frame, MaterialTable
+
+
+def random_frame(seed, spans: int, longest: int, two_sided: bool = False) -> Frame:
+    """`spans` legal spans of 1 to `longest` pixels with normals of all lengths and directions
+    (half of them lit throughout), of random materials."""
+    rng = np.random.default_rng(seed)
+    table = MaterialTable.empty(C)
+    for m in range(C.materials):
+        table.set(m, rng.random(3), rng.random(), rng.random(C.weight_points),
+                  float(rng.choice([1, 1.5, 10, 128])), C)  # fmt: skip
+    s = np.zeros(spans, SPAN_DTYPE)
+    s["length"] = rng.integers(1, longest + 1, spans)
+    s["x"] = rng.integers(0, C.max_size - longest, spans)
+    s["y"] = rng.integers(0, C.max_size, spans)
+    s["material"] = rng.integers(0, C.materials, spans)
+    ends = rng.integers(C.normal.min, C.normal.max + 1, (2, spans, 3))
+    up = rng.random(spans) < 0.5
+    ends[..., 2] = np.where(up, np.abs(ends[..., 2]) & C.normal.max, ends[..., 2])
+    ends >>= rng.integers(0, C.normal.bits, spans)[:, None]
+    s["start"] = ends[0]
+    s["step"] = (ends[1] - ends[0]) // np.maximum(s["length"] - 1, 4)[:, None]
+    s["last"][-1] = True
+    angle = rng.random() * 1.5
+    hx, hz = C.half_vector.quantize([np.sin(angle), np.cos(angle)])
+    return Frame(C.max_size, C.max_size, (int(hx), int(hz)), two_sided, (0, 0, 0), table, s)

@@ -1,0 +1,215 @@
+"""cocotb tests of phong_pipeline, a clock at a time: streams, stalls, resets, illegal spans.
+
+Run by tests/test_modules.py. Expected pixels come from the twin.
+"""
+
+from __future__ import annotations
+
+import os
+
+import cocotb
+import numpy as np
+
+from model.config import DEFAULT as C
+from model.frame import SPAN_DTYPE
+from model.registers import writes
+from model.spans import illegal_spans, pack, record_bits, span_fields
+from model.twin import render
+from sim.stream_tb import REGIMES, PipelineTB, pauses
+from tests.modules.frames import random_frame
+
+SEED = int(os.environ.get("PHONG_SEED", "75"))
+SPAN_BITS = span_fields(C)[-1].lsb
+LOW, HIGH = C.normal.min, C.normal.max
+
+
+def _words(spans):
+    """(tdata, tlast) of every span."""
+    size, body = record_bits(C) // 8, pack(spans, C)
+    for k in range(len(spans)):
+        record = int.from_bytes(body[k * size : (k + 1) * size], "big")
+        yield record & ((1 << SPAN_BITS) - 1), record >> SPAN_BITS
+
+
+def _pixels(frame):
+    """(tdata, tlast) of every pixel that the twin gives."""
+    p = render(frame, C)
+    for y, x, rgb, last in zip(p.y, p.x, p.rgb, p.last, strict=True):
+        data = int(y) << C.coordinate_bits | int(x)
+        for code in rgb:
+            data = data << C.colour_bits | int(code)
+        yield data, int(last)
+
+
+def _queue(tb, frame):
+    """Offer all spans of `frame` and expect its pixels."""
+    tb.source.queue.extend(_words(frame.spans))
+    tb.sink.expected.extend(_pixels(frame))
+
+
+@cocotb.test()
+@cocotb.parametrize(
+    idle=[cocotb.Param(regime, regime) for regime in REGIMES],
+    stall=[cocotb.Param(regime, regime) for regime in REGIMES],
+)
+async def frame_in_all_regimes(dut, idle, stall):
+    """However spans and room for pixels come, every pixel comes once, in order, unchanged."""
+    seed = f"{SEED} {idle} {stall}"
+    tb = PipelineTB(dut)
+    tb.sink.note = f"idle {idle}, stall {stall}, seed {seed}"
+    await tb.reset()
+    for two_sided in (False, True):
+        seeds = [SEED, two_sided, *idle.encode(), *stall.encode()]
+        frame = random_frame(seeds, 40, 9, two_sided)
+        await tb.write(writes(frame, C))
+        tb.source.idle, tb.sink.stall = pauses(idle, seed), pauses(stall, f"{seed} out")
+        _queue(tb, frame)
+        await tb.drain()
+    assert not tb.illegal_at, f"legal spans flagged at clocks {tb.illegal_at}; {tb.sink.note}"
+
+
+@cocotb.test()
+async def one_pixel_a_clock(dut):
+    """Spans of one pixel, back to back, take as many clocks as there are pixels."""
+    tb = PipelineTB(dut)
+    await tb.reset()
+    frame = random_frame(SEED, 500, 1)
+    tb.sink.note = f"seed {SEED}"
+    await tb.write(writes(frame, C))
+    await tb.settle()
+    latency = tb.read("pixel_latency") + 3  # accepted, slot written, slot read
+    _queue(tb, frame)
+    await tb.drain()
+    taken, came = tb.source.taken_at, tb.sink.taken_at
+    assert taken == list(range(taken[0], taken[0] + 500)), "a bubble between the spans"
+    assert came == [t + latency for t in taken], (
+        f"latency {came[0] - taken[0]}, expected {latency}; {came[-1] - came[0] + 1} clocks"
+    )
+
+
+@cocotb.test()
+async def long_stall(dut):
+    """A stall of any length loses nothing and is followed by a pixel every clock."""
+    tb = PipelineTB(dut)
+    await tb.reset()
+    frame = random_frame(SEED, 400, 1)
+    tb.sink.note = f"seed {SEED}"
+    await tb.write(writes(frame, C))
+    _queue(tb, frame)
+    tb.sink.stall = iter([True] * 300 + [False] * 10_000)
+    await tb.drain()
+    came = tb.sink.taken_at
+    assert came == list(range(came[0], came[0] + 400)), "the pixels after the stall have gaps"
+
+
+@cocotb.test()
+@cocotb.parametrize(clocks=[3, 40, 75, 110])
+async def reset_in_mid_frame(dut, clocks):
+    """A reset at any time drops what was at work; the frame after it is whole."""
+    tb = PipelineTB(dut)
+    await tb.reset()
+    frame = random_frame([SEED, clocks], 60, 5)
+    tb.sink.note = f"reset after {clocks} clocks, seed {SEED}"
+    await tb.write(writes(frame, C))
+    for _ in range(2):  # also with pixels waiting at the output
+        _queue(tb, frame)
+        for _ in range(clocks):
+            await tb.step()
+        await tb.reset(1)
+        for _ in range(200):
+            await tb.step()
+        _queue(tb, frame)
+        tb.sink.stall = iter([True] * clocks + [False] * 10_000)
+        await tb.drain()
+        tb.sink.stall = pauses("mostly", clocks)
+    assert not tb.illegal_at, f"legal spans flagged at clocks {tb.illegal_at}; {tb.sink.note}"
+
+
+def _span(start, step, length, x=0):
+    span = np.zeros(1, SPAN_DTYPE)
+    span["start"], span["step"], span["length"], span["x"] = start, step, length, x
+    return span
+
+
+def _border_spans():
+    """Spans at the borders of what is legal, and one unit beyond: (span, legal, what)."""
+    for axis in range(3):
+        name = "xyz"[axis]
+        for start, end, sign in ((LOW, HIGH, 1), (HIGH, LOW, -1)):
+            for length in (2, 4, 16):
+                begin = [0, 0, 0]
+                begin[axis] = start if length > 2 else end - sign * HIGH
+                step = (end - begin[axis]) // (length - 1)
+                assert begin[axis] + (length - 1) * step == end
+                steps = [0, 0, 0]
+                steps[axis] = step
+                yield _span(begin, steps, length), True, f"{name} from {begin[axis]} to {end}"
+                begin[axis] += sign
+                yield _span(begin, steps, length), False, f"{name} one beyond {end}"
+            # Out, then back in again: still illegal.
+            begin, steps = [0, 0, 0], [0, 0, 0]
+            begin[axis], steps[axis] = sign, sign * HIGH
+            yield _span(begin, steps, 4), False, f"{name} wraps around from {sign}"
+            # Out with the step after the last pixel only: legal.
+            begin[axis], steps[axis] = end, sign * HIGH
+            yield _span(begin, steps, 1), True, f"{name} leaves after the last pixel"
+    size = C.max_size
+    yield _span(0, 0, 1, size - 1), True, "the last column"
+    yield _span(0, 0, 2, size - 1), False, "one column beyond the counter"
+    yield _span(0, 0, 5, size - 5), True, "up to the last column"
+    yield _span(0, 0, 6, size - 5), False, "past the last column"
+    yield _span(0, 0, 0, 7), False, "no pixel"
+    yield _span(0, 0, 1, 7), True, "one pixel"
+
+
+@cocotb.test()
+async def illegal_spans_are_flagged_once(dut):
+    """Each span that leaves its word or the counter, or is empty, is flagged once, legal ones
+    never, and its pixels come nevertheless."""
+    tb = PipelineTB(dut)
+    await tb.reset()
+    frame = random_frame(SEED, 1, 1)
+    frame.spans = _span(0, 0, 1)
+    await tb.write(writes(frame, C))
+    everything = []
+    for span, legal, what in _border_spans():
+        frame.spans = span
+        inside = span["x"][0] + span["length"][0] <= C.max_size and span["length"][0] > 0
+        assert (legal or not inside) == (not illegal_spans(frame, C)[0] or not inside), what
+        tb.sink.note = what
+        tb.illegal_at.clear()
+        _queue(tb, frame)
+        await tb.drain(after=5)
+        assert len(tb.illegal_at) == (not legal), (
+            f"module phong_pipeline: span with {what} flagged {len(tb.illegal_at)} times"
+        )
+        everything.append((span, legal))
+    # All of them back to back, in a random order.
+    order = np.random.default_rng(SEED).permutation(len(everything))
+    frame.spans = np.concatenate([everything[k][0] for k in order])
+    frame.spans["last"][-1] = True
+    tb.sink.note = f"all border spans, seed {SEED}"
+    tb.illegal_at.clear()
+    _queue(tb, frame)
+    await tb.drain()
+    wanted = sum(not legal for _, legal in everything)
+    assert len(tb.illegal_at) == wanted, (
+        f"module phong_pipeline: {len(tb.illegal_at)} flags for {wanted} illegal spans"
+    )
+
+
+@cocotb.test()
+async def longest_spans(dut):
+    """A span over the whole counter is legal; one pixel more, or from one pixel later, is not."""
+    tb = PipelineTB(dut)
+    await tb.reset()
+    frame = random_frame(SEED, 1, 1)
+    frame.spans = _span(0, 0, 1)
+    await tb.write(writes(frame, C))
+    for length, x, legal in ((C.max_size, 0, True), (C.max_size, 1, False)):
+        frame.spans = _span([0, 0, LOW], [0, 0, (HIGH - LOW) // C.max_size], length, x)
+        tb.sink.note = f"length {length} from x = {x}"
+        tb.illegal_at.clear()
+        _queue(tb, frame)
+        await tb.drain(after=5)
+        assert len(tb.illegal_at) == (not legal), f"{tb.sink.note}: {len(tb.illegal_at)} flags"
