@@ -40,13 +40,17 @@ module pixel_fifo #(
   localparam COUNT_BITS = $clog2(SLOTS + 1);
   localparam [COUNT_BITS-1:0] ALL = SLOTS;
 
+  // In logic cells: block RAM would be slow without an output register and nearly empty.
+  (* ram_style = "distributed" *)
   reg [2*COORDINATE_BITS:0] places[0:SLOTS-1];
+  (* ram_style = "distributed" *)
   reg [3*COLOUR_BITS-1:0] colours[0:SLOTS-1];
   reg [SLOT_BITS-1:0] place_slot;
   reg [SLOT_BITS-1:0] colour_slot;
   reg [SLOT_BITS-1:0] read_slot;
   reg [COUNT_BITS-1:0] credits;  // free slots
   reg [COUNT_BITS-1:0] filled;  // slots with a colour
+  reg some;  // filled is not 0
 
   // ---- the valid bits of the pipeline ----
   reg [LATENCY-1:0] in_flight;
@@ -58,9 +62,11 @@ module pixel_fifo #(
   end
 
   // ---- slots ----
-  wire pop = (filled != 0) & (~out_valid | out_ready);
-  wire [COUNT_BITS-1:0] credits_next =
-      credits + {{COUNT_BITS - 1{1'b0}}, pop} - {{COUNT_BITS - 1{1'b0}}, pixel_valid};
+  // `some` and `credit` look one clock ahead from bits of the counts, not from their sums: `pop`
+  // is the start of the longest paths.
+  wire pop = some & (~out_valid | out_ready);
+  wire more_credits = |credits[COUNT_BITS-1:1];
+  wire more_filled = |filled[COUNT_BITS-1:1];
 
   always @(posedge clk) begin
     if (pixel_valid) places[place_slot] <= {pixel_last, pixel_y, pixel_x};
@@ -77,14 +83,16 @@ module pixel_fifo #(
       credits <= ALL;
       credit <= 1'b0;
       filled <= 0;
+      some <= 1'b0;
       out_valid <= 1'b0;
     end else begin
       if (pixel_valid) place_slot <= place_slot == LAST_SLOT ? 0 : place_slot + 1'b1;
       if (colour_valid) colour_slot <= colour_slot == LAST_SLOT ? 0 : colour_slot + 1'b1;
       if (pop) read_slot <= read_slot == LAST_SLOT ? 0 : read_slot + 1'b1;
-      credits <= credits_next;
-      credit <= credits_next != 0;
-      filled <= filled + {{COUNT_BITS - 1{1'b0}}, colour_valid} - {{COUNT_BITS - 1{1'b0}}, pop};
+      if (pop ^ pixel_valid) credits <= credits + {{COUNT_BITS - 1{pixel_valid}}, 1'b1};
+      credit <= pop | more_credits | (credits[0] & ~pixel_valid);
+      if (pop ^ colour_valid) filled <= filled + {{COUNT_BITS - 1{pop}}, 1'b1};
+      some <= colour_valid | more_filled | (filled[0] & ~pop);
       out_valid <= pop | (out_valid & ~out_ready);
     end
   end

@@ -314,7 +314,10 @@ module specular_power #(
   wire [POWER_BITS-1:0] cosine_p28;
   wire bypass_p28;
   reg [POWER_BITS-1:0] result_p29;
-  wire [POWER_BITS-1:0] cosine_s;
+  reg [VERSINE_BITS:0] cosine_p1;
+  wire [POWER_BITS-1:0] cosine_p3;
+
+  always @(posedge clk) cosine_p1 <= {1'b1, {VERSINE_FRACTION{1'b0}}} - {1'b0, versine};
 
   round_saturate #(
       .IN_BITS  (VERSINE_BITS + 1),
@@ -323,16 +326,16 @@ module specular_power #(
       .IS_SIGNED(0)
   ) u_cosine (
       .clk(clk),
-      .in ({1'b1, {VERSINE_FRACTION{1'b0}}} - {1'b0, versine}),
-      .out(cosine_s)
+      .in (cosine_p1),
+      .out(cosine_p3)
   );
 
   delay #(
       .BITS  (POWER_BITS),
-      .CYCLES(LATENCY - `PHONG_ROUND_SATURATE_LATENCY - 1)
+      .CYCLES(LATENCY - 1 - `PHONG_ROUND_SATURATE_LATENCY - 1)
   ) u_cosine_wait (
       .clk(clk),
-      .in (cosine_s),
+      .in (cosine_p3),
       .out(cosine_p28)
   );
 
