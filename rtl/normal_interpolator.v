@@ -8,12 +8,12 @@ module normal_interpolator #(
     parameter NORMAL_BITS = `PHONG_NORMAL_BITS
 ) (
     input  wire                   clk,
-    input  wire                   load,     // take start and step
-    input  wire                   advance,  // add step
+    input  wire                   advance,  // take the next value
+    input  wire                   load,     // it is start, and step comes with it; else add step
     input  wire [NORMAL_BITS-1:0] start,    // s1.30, at the first pixel's centre
     input  wire [NORMAL_BITS-1:0] step,     // s1.30, from pixel to pixel
     output reg  [NORMAL_BITS-1:0] value,    // s1.30, at the present pixel's centre
-    output reg                    overflow  // value has left the word since load
+    output wire                   overflow  // value has left the word since load
 );
 
   localparam SIGN = NORMAL_BITS - 1;
@@ -21,16 +21,22 @@ module normal_interpolator #(
   reg  [NORMAL_BITS-1:0] step_held;
 
   wire [NORMAL_BITS-1:0] sum = value + step_held;
-  wire wraps = (value[SIGN] == step_held[SIGN]) & (sum[SIGN] != value[SIGN]);
+
+  // Looked for after the addition, in what is left of it, since the addition takes a whole clock.
+  reg  stepped;  // value is a sum
+  reg  sign_before;  // of what step was added to
+  reg  left;  // overflow before that
+  wire wrapped = stepped & (sign_before == step_held[SIGN]) & (value[SIGN] != sign_before);
+
+  assign overflow = left | wrapped;
 
   always @(posedge clk) begin
-    if (load) begin
-      value <= start;
-      step_held <= step;
-      overflow <= 1'b0;
-    end else if (advance) begin
-      value <= sum;
-      overflow <= overflow | wraps;
+    if (advance) begin
+      if (load) step_held <= step;
+      value <= load ? start : sum;
+      stepped <= ~load;
+      sign_before <= value[SIGN];
+      left <= ~load & overflow;
     end
   end
 

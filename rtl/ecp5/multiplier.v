@@ -19,9 +19,11 @@ module multiplier #(
 
   generate
     if (A_BITS <= 18 && B_BITS <= 18) begin : gen_block
-      wire [17:0] a_wide = {{18{(A_SIGNED != 0) & a[A_BITS-1]}}, a};
-      wire [17:0] b_wide = {{18{(B_SIGNED != 0) & b[B_BITS-1]}}, b};
+      wire [17:0] a_wide = {{18 - A_BITS{(A_SIGNED != 0) & a[A_BITS-1]}}, a};
+      wire [17:0] b_wide = {{18 - B_BITS{(B_SIGNED != 0) & b[B_BITS-1]}}, b};
+      // verilator lint_off UNUSEDSIGNAL
       wire [35:0] full;
+      // verilator lint_on UNUSEDSIGNAL
 
       MULT18X18D #(
           .REG_INPUTA_CLK("CLK0"),

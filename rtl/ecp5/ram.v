@@ -18,10 +18,12 @@ module ram #(
 
   generate
     if (ADDRESS_BITS <= 9 && WORD_BITS <= 36) begin : gen_block
-      wire [ 8:0] address_wide = {9'b0, address};
-      wire [ 8:0] write_address_wide = {9'b0, write_address};
-      wire [35:0] write_word_wide = {36'b0, write_word};
+      wire [ 8:0] address_wide = {{9 - ADDRESS_BITS{1'b0}}, address};
+      wire [ 8:0] write_address_wide = {{9 - ADDRESS_BITS{1'b0}}, write_address};
+      wire [35:0] write_word_wide = {{36 - WORD_BITS{1'b0}}, write_word};
+      // verilator lint_off UNUSEDSIGNAL
       wire [35:0] full;
+      // verilator lint_on UNUSEDSIGNAL
 
       block_ram u_block (
           .clk(clk),

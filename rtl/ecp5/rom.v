@@ -17,7 +17,7 @@ module rom #(
   function [512*36-1:0] padded(input integer unused);
     integer k;
     begin
-      padded = {512 * 36{1'b0}};
+      padded = 0;
       for (k = 0; k < (1 << ADDRESS_BITS); k = k + 1) begin
         padded[36*k+:WORD_BITS] = CONTENTS[WORD_BITS*k+:WORD_BITS];
       end
@@ -26,8 +26,10 @@ module rom #(
 
   generate
     if (ADDRESS_BITS <= 9 && WORD_BITS <= 36) begin : gen_block
-      wire [ 8:0] address_wide = {9'b0, address};
+      wire [ 8:0] address_wide = {{9 - ADDRESS_BITS{1'b0}}, address};
+      // verilator lint_off UNUSEDSIGNAL
       wire [35:0] full;
+      // verilator lint_on UNUSEDSIGNAL
 
       block_ram #(
           .CONTENTS(padded(0))
