@@ -7,13 +7,16 @@ CLOCK_MHZ ?= 200
 OUT ?=
 SPANS ?=
 MODULE ?= phong_pipeline
+CONFIG ?= default
+GRADE ?= 6
+SEEDS ?= 3
 
 PYTHON := .venv/bin/python
 # An argument for the shell, whatever is in it.
 quote = '$(subst ','\'',$(1))'
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test lint results bench coverage activity waves mutate clean
+.PHONY: help setup run test lint results bench synth coverage activity mutate waves clean
 
 help: ## this list
 	@echo 'make run      render SCENE through the RTL and the model, compare, write pictures and report'
@@ -27,6 +30,10 @@ help: ## this list
 	@echo 'make lint     Verilator -Wall and Verible on rtl/ and sim/, Ruff on Python'
 	@echo 'make results  the README'"'"'s table of results, measured anew'
 	@echo 'make bench    clocks a second of the simulation, frames a second of the model'
+	@echo 'make synth    synthesis, place and route for an ECP5; build/synth/CONFIG/report.json'
+	@echo '                CONFIG=default  a configuration by name'
+	@echo '                GRADE=6         speed grade of the chip, 6 or 8'
+	@echo '                SEEDS=3         how many placements to try; the median counts'
 	@echo 'make coverage line, branch and toggle coverage of rtl/ by the module and frame tests'
 	@echo 'make activity register toggles a pixel of every bundled scene'
 	@echo 'make waves    MODULE=phong_pipeline: a waveform of a short run, grouped for GTKWave'
@@ -53,6 +60,10 @@ bench: setup
 
 results: setup
 	@$(PYTHON) -m scripts.results
+
+synth: setup
+	@$(PYTHON) -m scripts.synth --config=$(call quote,$(CONFIG)) --grade=$(call quote,$(GRADE)) \
+	  --seeds=$(call quote,$(SEEDS))
 
 coverage: setup
 	@$(PYTHON) -m scripts.coverage

@@ -76,7 +76,7 @@ module colour_channel #(
   ) u_diffuse (
       .clk(clk),
       .a(diffuse),
-      .b(cosine),
+      .b(cosine & {COSINE_BITS{lit}}),
       .product(diffuse_p2)
   );
 
@@ -103,7 +103,7 @@ module colour_channel #(
   };
 
   always @(posedge clk) begin
-    diffuse_sum_p3 <= ambient_term + (diffuse_term & {SUM_BITS{lit_p2}});
+    diffuse_sum_p3 <= ambient_term + diffuse_term;
     specular_p3 <= specular & {SPECULAR_BITS{lit_p2}};
     sum_p4 <= diffuse_sum_p3 + {{SUM_BITS - SPECULAR_BITS{1'b0}}, specular_p3};
     intensity_p5 <= |sum_p4[SUM_BITS-1:SPECULAR_FRACTION]

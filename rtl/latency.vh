@@ -5,7 +5,7 @@
 `define PHONG_LATENCY_VH
 
 `define PHONG_MULTIPLIER_LATENCY 2         // operand register, product register
-`define PHONG_NARROW_MULTIPLIER_LATENCY 3  // three levels of an adder tree over 8 rows
+`define PHONG_NARROW_MULTIPLIER_LATENCY 4  // 8 rows, three levels of an adder tree
 `define PHONG_ROM_LATENCY 2                // array register, output register
 `define PHONG_RAM_LATENCY 2                // array register, output register
 `define PHONG_SMALL_RAM_LATENCY 1          // output register
@@ -38,10 +38,10 @@
 
 `define PHONG_REFLECTION_LATENCY \
   ( `PHONG_MULTIPLIER_LATENCY        /* across: products with h */ \
-  + 1                                /* across: subtract */ \
+  + 2                                /* across: fetch, subtract */ \
   + `PHONG_ROUND_SATURATE_LATENCY \
   + `PHONG_MULTIPLIER_LATENCY        /* versine: squares */ \
-  + 1                                /* versine: sum */ \
+  + 2                                /* versine: fetch, sum */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
 `define PHONG_LOG_LATENCY \

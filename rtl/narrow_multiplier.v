@@ -1,6 +1,6 @@
 // narrow_multiplier: exact product of an unsigned word and up to 8 unsigned bits, in logic.
 // A DSP block would be wasted on so few bits: 8 gated rows are added in a tree of three levels.
-// Latency 3, one result a clock.
+// Latency 4, one result a clock.
 `default_nettype none
 `include "latency.vh"
 
@@ -19,26 +19,28 @@ module narrow_multiplier #(
 
   wire [ROWS-1:0] rows = {{ROWS - B_BITS{1'b0}}, b};
 
-  reg [A_BITS+1:0] pair_p1[0:3];
-  reg [A_BITS+3:0] quad_p2[0:1];
-  reg [A_BITS+7:0] all_p3;
+  reg [A_BITS-1:0] row_p1[0:7];
+  reg [A_BITS+1:0] pair_p2[0:3];
+  reg [A_BITS+3:0] quad_p3[0:1];
+  reg [A_BITS+7:0] all_p4;
 
   integer i;
   always @(posedge clk) begin
+    for (i = 0; i < 8; i = i + 1) row_p1[i] <= a & {A_BITS{rows[i]}};
     for (i = 0; i < 4; i = i + 1) begin
-      pair_p1[i] <= {2'b0, a & {A_BITS{rows[2*i]}}} + {1'b0, a & {A_BITS{rows[2*i+1]}}, 1'b0};
+      pair_p2[i] <= {2'b0, row_p1[2*i]} + {1'b0, row_p1[2*i+1], 1'b0};
     end
     for (i = 0; i < 2; i = i + 1) begin
-      quad_p2[i] <= {2'b0, pair_p1[2*i]} + {pair_p1[2*i+1], 2'b0};
+      quad_p3[i] <= {2'b0, pair_p2[2*i]} + {pair_p2[2*i+1], 2'b0};
     end
-    all_p3 <= {4'b0, quad_p2[0]} + {quad_p2[1], 4'b0};
+    all_p4 <= {4'b0, quad_p3[0]} + {quad_p3[1], 4'b0};
   end
 
-  assign product = all_p3[A_BITS+B_BITS-1:0];
+  assign product = all_p4[A_BITS+B_BITS-1:0];
 
   generate
     if (B_BITS < ROWS) begin : gen_unused
-      wire unused = &{1'b0, all_p3[A_BITS+ROWS-1:A_BITS+B_BITS]};
+      wire unused = &{1'b0, all_p4[A_BITS+ROWS-1:A_BITS+B_BITS]};
     end
   endgenerate
 

@@ -8,29 +8,55 @@ module normal_interpolator #(
     parameter NORMAL_BITS = `PHONG_NORMAL_BITS
 ) (
     input  wire                   clk,
-    input  wire                   load,     // take start and step
-    input  wire                   advance,  // add step
+    input  wire                   advance,  // take the next value
+    input  wire                   load,     // it is start, and step comes with it; else add step
     input  wire [NORMAL_BITS-1:0] start,    // s1.30, at the first pixel's centre
     input  wire [NORMAL_BITS-1:0] step,     // s1.30, from pixel to pixel
-    output reg  [NORMAL_BITS-1:0] value,    // s1.30, at the present pixel's centre
-    output reg                    overflow  // value has left the word since load
+    output wire [NORMAL_BITS-1:0] value,    // s1.30, at the present pixel's centre
+    output wire                   overflow  // value has left the word since load
 );
 
   localparam SIGN = NORMAL_BITS - 1;
+  localparam LOW_BITS = NORMAL_BITS / 2;
+  localparam HIGH_BITS = NORMAL_BITS - LOW_BITS;
 
-  reg  [NORMAL_BITS-1:0] step_held;
+  // The low half runs one pixel ahead, so that its carry is a register when the high half adds:
+  // no carry runs through more than half of the word.
+  reg [NORMAL_BITS-1:0] step_held;
+  reg [LOW_BITS-1:0] low;
+  reg [LOW_BITS-1:0] low_next;
+  reg carry_next;  // from low to low_next
+  reg [HIGH_BITS-1:0] high;
 
-  wire [NORMAL_BITS-1:0] sum = value + step_held;
-  wire wraps = (value[SIGN] == step_held[SIGN]) & (sum[SIGN] != value[SIGN]);
+  wire [LOW_BITS-1:0] low_from = load ? start[LOW_BITS-1:0] : low_next;
+  wire [LOW_BITS-1:0] low_step = load ? step[LOW_BITS-1:0] : step_held[LOW_BITS-1:0];
+  wire [HIGH_BITS-1:0] high_sum =
+      high + step_held[SIGN:LOW_BITS] + {{HIGH_BITS - 1{1'b0}}, carry_next};
+
+  assign value = {high, low};
 
   always @(posedge clk) begin
-    if (load) begin
-      value <= start;
-      step_held <= step;
-      overflow <= 1'b0;
-    end else if (advance) begin
-      value <= sum;
-      overflow <= overflow | wraps;
+    if (advance) begin
+      if (load) step_held <= step;
+      low <= low_from;
+      {carry_next, low_next} <= {1'b0, low_from} + {1'b0, low_step};
+      high <= load ? start[SIGN:LOW_BITS] : high_sum;
+    end
+  end
+
+  // ---- overflow: looked for after the addition, which takes a whole clock ----
+  reg stepped;  // value is a sum
+  reg sign_before;  // of what step was added to
+  reg left;  // overflow before that
+  wire wrapped = stepped & (sign_before == step_held[SIGN]) & (value[SIGN] != sign_before);
+
+  assign overflow = left | wrapped;
+
+  always @(posedge clk) begin
+    if (advance) begin
+      stepped <= ~load;
+      sign_before <= value[SIGN];
+      left <= ~load & overflow;
     end
   end
 

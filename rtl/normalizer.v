@@ -83,6 +83,7 @@ module normalizer #(
   wire below_one;
   wire [UNIT_BITS-1:0] unit[X:Z];
   wire [PRODUCT_BITS:0] product[X:Z];
+  wire [PRODUCT_BITS-1:0] scaled_z;
 
   localparam ROOT_WAIT = `PHONG_MULTIPLIER_LATENCY + 2 + 1 + `PHONG_INVERSE_SQRT_LATENCY;
 
@@ -162,6 +163,9 @@ module normalizer #(
       end
 
       assign product[c] = doubled;
+      if (c == Z) begin : gen_scaled
+        assign scaled_z = scaled;
+      end
 
       round_saturate #(
           .IN_BITS (PRODUCT_BITS + 1),
@@ -220,18 +224,31 @@ module normalizer #(
   );
 
   // ---- round: |Zn| with one bit more than the unit normal ----
+  // -z is ~z + 1; that 1 reaches the kept bits only through the half that rounding adds, so both
+  // are one carry and |Zn| costs no adder of its own.
+  localparam COSINE_DROP = PRODUCT_FRACTION - COSINE_FRACTION;
+  localparam MAGNITUDE_BITS = PRODUCT_BITS + 1 - COSINE_DROP;
+
   wire negative = product[Z][PRODUCT_BITS];
-  wire [PRODUCT_BITS:0] magnitude = (product[Z] ^ {PRODUCT_BITS + 1{negative}})
-                                  + {{PRODUCT_BITS{1'b0}}, negative};
+  wire half = product[Z][COSINE_DROP-1];
+  reg below_half_zero;  // all bits below the half
+
+  always @(posedge clk) begin
+    below_half_zero <= ~|scaled_z[COSINE_DROP-3:0] & (below_one | ~scaled_z[COSINE_DROP-2]);
+  end
+
+  wire [MAGNITUDE_BITS-1:0] magnitude =
+      product[Z][PRODUCT_BITS:COSINE_DROP] ^ {MAGNITUDE_BITS{negative}};
+  wire carry = negative ? ~half | below_half_zero : half;
 
   round_saturate #(
-      .IN_BITS  (PRODUCT_BITS + 1),
-      .DROP     (PRODUCT_FRACTION - COSINE_FRACTION),
+      .IN_BITS  (MAGNITUDE_BITS + 1),
+      .DROP     (1),
       .OUT_BITS (COSINE_BITS),
       .IS_SIGNED(0)
   ) u_cosine (
       .clk(clk),
-      .in (magnitude),
+      .in ({magnitude, carry}),
       .out(cosine)
   );
 

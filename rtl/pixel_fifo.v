@@ -28,25 +28,26 @@ module pixel_fifo #(
 
     output reg                                        out_valid,
     input  wire                                       out_ready,
-    output reg  [2*COORDINATE_BITS+3*COLOUR_BITS-1:0] out_data,   // {y, x, red, green, blue}
-    output reg                                        out_last
+    output wire [2*COORDINATE_BITS+3*COLOUR_BITS-1:0] out_data,   // {y, x, red, green, blue}
+    output wire                                       out_last
 );
 
   // A slot is taken for LATENCY clocks, and for 1 to be written, 1 to be read, 1 for its credit.
   localparam SLOTS_NEEDED = LATENCY + 3;
-  localparam SLOTS = 16 * ((SLOTS_NEEDED + 15) / 16);  // small RAMs come in sixteens
-  localparam SLOT_BITS = $clog2(SLOTS);
+  localparam BANK = 16;  // small RAMs come in sixteens
+  localparam BANKS = (SLOTS_NEEDED + BANK - 1) / BANK;
+  localparam SLOTS = BANK * BANKS;
+  localparam SLOT_BITS = 4 + (BANKS > 1 ? $clog2(BANKS) : 1);
   localparam [SLOT_BITS-1:0] LAST_SLOT = SLOTS[SLOT_BITS-1:0] - 1'b1;
   localparam COUNT_BITS = $clog2(SLOTS + 1);
   localparam [COUNT_BITS-1:0] ALL = SLOTS;
 
-  reg [2*COORDINATE_BITS:0] places[0:SLOTS-1];
-  reg [3*COLOUR_BITS-1:0] colours[0:SLOTS-1];
   reg [SLOT_BITS-1:0] place_slot;
   reg [SLOT_BITS-1:0] colour_slot;
   reg [SLOT_BITS-1:0] read_slot;
   reg [COUNT_BITS-1:0] credits;  // free slots
   reg [COUNT_BITS-1:0] filled;  // slots with a colour
+  reg some;  // filled is not 0
 
   // ---- the valid bits of the pipeline ----
   reg [LATENCY-1:0] in_flight;
@@ -58,18 +59,13 @@ module pixel_fifo #(
   end
 
   // ---- slots ----
-  wire pop = (filled != 0) & (~out_valid | out_ready);
-  wire [COUNT_BITS-1:0] credits_next =
-      credits + {{COUNT_BITS - 1{1'b0}}, pop} - {{COUNT_BITS - 1{1'b0}}, pixel_valid};
+  // `some` and `credit` look one clock ahead from bits of the counts, not from their sums: `pop`
+  // is the start of the longest paths.
+  wire pop = some & (~out_valid | out_ready);
+  wire more_credits = |credits[COUNT_BITS-1:1];
+  wire more_filled = |filled[COUNT_BITS-1:1];
 
   always @(posedge clk) begin
-    if (pixel_valid) places[place_slot] <= {pixel_last, pixel_y, pixel_x};
-    if (colour_valid) colours[colour_slot] <= {red, green, blue};
-    if (pop) begin
-      {out_last, out_data[2*COORDINATE_BITS+3*COLOUR_BITS-1:3*COLOUR_BITS]} <= places[read_slot];
-      out_data[3*COLOUR_BITS-1:0] <= colours[read_slot];
-    end
-
     if (reset) begin
       place_slot <= 0;
       colour_slot <= 0;
@@ -77,17 +73,58 @@ module pixel_fifo #(
       credits <= ALL;
       credit <= 1'b0;
       filled <= 0;
+      some <= 1'b0;
       out_valid <= 1'b0;
     end else begin
       if (pixel_valid) place_slot <= place_slot == LAST_SLOT ? 0 : place_slot + 1'b1;
       if (colour_valid) colour_slot <= colour_slot == LAST_SLOT ? 0 : colour_slot + 1'b1;
       if (pop) read_slot <= read_slot == LAST_SLOT ? 0 : read_slot + 1'b1;
-      credits <= credits_next;
-      credit <= credits_next != 0;
-      filled <= filled + {{COUNT_BITS - 1{1'b0}}, colour_valid} - {{COUNT_BITS - 1{1'b0}}, pop};
+      if (pop ^ pixel_valid) credits <= credits + {{COUNT_BITS - 1{pixel_valid}}, 1'b1};
+      credit <= pop | more_credits | (credits[0] & ~pixel_valid);
+      if (pop ^ colour_valid) filled <= filled + {{COUNT_BITS - 1{~colour_valid}}, 1'b1};
+      some <= colour_valid | more_filled | (filled[0] & ~pop);
       out_valid <= pop | (out_valid & ~out_ready);
     end
   end
+
+  // ---- banks of slots, in logic cells: block RAM would be nearly empty ----
+  // Each reads into a register of its own; choosing between them comes after the registers.
+  localparam PLACE_BITS = 1 + 2 * COORDINATE_BITS;
+  localparam PIXEL_BITS = PLACE_BITS + 3 * COLOUR_BITS;
+
+  wire [PIXEL_BITS-1:0] chosen[0:BANKS];
+
+  assign chosen[0] = {PIXEL_BITS{1'b0}};
+  assign {out_last, out_data} = chosen[BANKS];
+
+  genvar b;
+  generate
+    for (b = 0; b < BANKS; b = b + 1) begin : gen_bank
+      localparam [SLOT_BITS-1:0] FIRST = BANK * b;
+
+      (* ram_style = "distributed" *)
+      reg [PLACE_BITS-1:0] places[0:BANK-1];
+      (* ram_style = "distributed" *)
+      reg [3*COLOUR_BITS-1:0] colours[0:BANK-1];
+      reg [PIXEL_BITS-1:0] pixel;
+      reg here;  // the pixel at the output is from this bank
+
+      always @(posedge clk) begin
+        if (pixel_valid & (place_slot[SLOT_BITS-1:4] == FIRST[SLOT_BITS-1:4])) begin
+          places[place_slot[3:0]] <= {pixel_last, pixel_y, pixel_x};
+        end
+        if (colour_valid & (colour_slot[SLOT_BITS-1:4] == FIRST[SLOT_BITS-1:4])) begin
+          colours[colour_slot[3:0]] <= {red, green, blue};
+        end
+        if (pop) begin
+          pixel <= {places[read_slot[3:0]], colours[read_slot[3:0]]};
+          here <= read_slot[SLOT_BITS-1:4] == FIRST[SLOT_BITS-1:4];
+        end
+      end
+
+      assign chosen[b+1] = chosen[b] | (pixel & {PIXEL_BITS{here}});
+    end
+  endgenerate
 
 endmodule
 

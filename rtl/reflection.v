@@ -63,15 +63,20 @@ module reflection #(
       .product(xz_p2)
   );
 
-  reg [PRODUCT_BITS-1:0] across_y_p3;
-  reg [PRODUCT_BITS:0] across_x_p3;
+  // Products far apart on the chip meet in one long addition, so they are fetched first.
+  reg [PRODUCT_BITS-1:0] zy_p3, zx_p3, xz_p3;
+  reg [PRODUCT_BITS-1:0] across_y_p4;
+  reg [PRODUCT_BITS:0] across_x_p4;
 
   always @(posedge clk) begin
-    across_y_p3 <= zy_p2;
-    across_x_p3 <= {zx_p2[PRODUCT_BITS-1], zx_p2} - {xz_p2[PRODUCT_BITS-1], xz_p2};
+    zy_p3 <= zy_p2;
+    zx_p3 <= zx_p2;
+    xz_p3 <= xz_p2;
+    across_y_p4 <= zy_p3;
+    across_x_p4 <= {zx_p3[PRODUCT_BITS-1], zx_p3} - {xz_p3[PRODUCT_BITS-1], xz_p3};
   end
 
-  wire [UNIT_BITS-1:0] p_p5, q_p5;
+  wire [UNIT_BITS-1:0] p_p6, q_p6;
 
   round_saturate #(
       .IN_BITS (PRODUCT_BITS),
@@ -79,8 +84,8 @@ module reflection #(
       .OUT_BITS(UNIT_BITS)
   ) u_p (
       .clk(clk),
-      .in (across_y_p3),
-      .out(p_p5)
+      .in (across_y_p4),
+      .out(p_p6)
   );
 
   round_saturate #(
@@ -89,21 +94,21 @@ module reflection #(
       .OUT_BITS(UNIT_BITS)
   ) u_q (
       .clk(clk),
-      .in (across_x_p3),
-      .out(q_p5)
+      .in (across_x_p4),
+      .out(q_p6)
   );
 
   // ---- versine: twice the sum of their squares ----
-  wire [SUM_BITS-1:0] pp_p7, qq_p7;
+  wire [SUM_BITS-1:0] pp_p8, qq_p8;
 
   multiplier #(
       .A_BITS(UNIT_BITS),
       .B_BITS(UNIT_BITS)
   ) u_pp (
       .clk(clk),
-      .a(p_p5),
-      .b(p_p5),
-      .product(pp_p7)
+      .a(p_p6),
+      .b(p_p6),
+      .product(pp_p8)
   );
 
   multiplier #(
@@ -111,14 +116,19 @@ module reflection #(
       .B_BITS(UNIT_BITS)
   ) u_qq (
       .clk(clk),
-      .a(q_p5),
-      .b(q_p5),
-      .product(qq_p7)
+      .a(q_p6),
+      .b(q_p6),
+      .product(qq_p8)
   );
 
-  reg [SUM_BITS-1:0] sum_p8;
+  reg [SUM_BITS-1:0] pp_p9, qq_p9;
+  reg [SUM_BITS-1:0] sum_p10;
 
-  always @(posedge clk) sum_p8 <= pp_p7 + qq_p7;
+  always @(posedge clk) begin
+    pp_p9 <= pp_p8;
+    qq_p9 <= qq_p8;
+    sum_p10 <= pp_p9 + qq_p9;
+  end
 
   round_saturate #(
       .IN_BITS  (SUM_BITS),
@@ -127,7 +137,7 @@ module reflection #(
       .IS_SIGNED(0)
   ) u_versine (
       .clk(clk),
-      .in (sum_p8),
+      .in (sum_p10),
       .out(versine)
   );
 

@@ -20,9 +20,9 @@ module span_walker #(
     input  wire [  MATERIAL_BITS-1:0] span_material,
     input  wire                       span_last,      // last span of the frame
 
-    // interpolators
-    output wire load,      // take start and step
-    output wire advance,   // add step
+    // interpolators; while there is no span they may load anything
+    output wire advance,   // take the next value
+    output wire load,      // as the next value take start, and step with it; else add step
     input  wire overflow,  // a component has left its word since load
 
     // pixel, at the time of the interpolators' values
@@ -33,43 +33,58 @@ module span_walker #(
     output reg  [  MATERIAL_BITS-1:0] pixel_material,
     output wire                       pixel_last,  // last pixel of the frame
 
-    output reg illegal_span  // for one clock: a span was empty, left its word or the counter
+    output wire illegal_span  // for one clock: a span was empty, left its word or the counter
 );
 
   reg busy;
-  reg at_end;  // the pixel at the outputs is the last of its span
+  reg at_end;  // the pixel at the outputs is the last of its span, or there is none
+  reg next_ends;  // the pixel after it is
   reg [COORDINATE_BITS:0] remaining;  // pixels of the span after this one
+  reg [1:0] beyond;  // of pixel_x: how often it left the counter
   reg last;
-  reg illegal;
+  reg empty;
+  reg ended;  // a span did, one clock ago
+  reg illegal;  // it was
 
   assign pixel_valid = busy & credit;
   assign pixel_last = last & at_end;
-  assign span_ready = ~busy | (credit & at_end);
-  assign load = span_valid & span_ready;
-  assign advance = pixel_valid & ~at_end;
+  assign span_ready = credit & at_end;
+
+  // Both drive whole words, so they are registers: span_valid decides only whether what was loaded
+  // is a span, and without credit nothing moves, not even into an idle walker.
+  assign advance = credit;
+  assign load = at_end;
 
   always @(posedge clk) begin
-    if (load) begin
-      pixel_x <= span_x;
-      pixel_y <= span_y;
-      pixel_material <= span_material;
-      last <= span_last;
-      remaining <= span_length - 1'b1;
-      at_end <= span_length[COORDINATE_BITS:1] == 0;
-      illegal <= span_length == 0;
-    end else if (advance) begin
-      pixel_x <= pixel_x + 1'b1;
-      remaining <= remaining - 1'b1;
-      at_end <= remaining == 1;
-      illegal <= illegal | (&pixel_x);
+    if (advance) begin
+      if (load) begin
+        {beyond, pixel_x} <= {2'b0, span_x};
+        pixel_y <= span_y;
+        pixel_material <= span_material;
+        last <= span_last;
+        remaining <= span_length - 1'b1;
+        next_ends <= span_length == 2;
+        empty <= span_length == 0;
+      end else begin
+        {beyond, pixel_x} <= {beyond, pixel_x} + 1'b1;
+        remaining <= remaining - 1'b1;
+        next_ends <= remaining == 2;
+      end
     end
 
-    if (reset) busy <= 1'b0;
-    else if (load) busy <= 1'b1;
-    else if (pixel_valid & at_end) busy <= 1'b0;
+    if (reset) begin
+      busy <= 1'b0;
+      at_end <= 1'b1;
+    end else if (advance) begin
+      busy <= span_valid | ~load;
+      at_end <= load ? ~span_valid | (span_length[COORDINATE_BITS:1] == 0) : next_ends;
+    end
 
-    illegal_span <= ~reset & pixel_valid & at_end & (illegal | overflow);
+    ended <= ~reset & pixel_valid & at_end;
+    illegal <= empty | (beyond != 0) | overflow;
   end
+
+  assign illegal_span = ended & illegal;
 
 endmodule
 

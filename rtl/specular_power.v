@@ -247,10 +247,10 @@ module specular_power #(
   );
 
   // ---- exp_refine: value - slope * offset ----
-  wire [EXP_SLOPE_BITS+EXP_OFFSET_BITS-1:0] exp_fall_p23;
-  wire [EXP_VALUE_BITS-1:0] exp_value_p23;
-  wire [WHOLE_BITS-1:0] whole_p24;
-  reg [EXP_VALUE_BITS-1:0] line_p24;
+  wire [EXP_SLOPE_BITS+EXP_OFFSET_BITS-1:0] exp_fall_p24;
+  wire [EXP_VALUE_BITS-1:0] exp_value_p24;
+  wire [WHOLE_BITS-1:0] whole_p25;
+  reg [EXP_VALUE_BITS-1:0] line_p25;
 
   narrow_multiplier #(
       .A_BITS(EXP_SLOPE_BITS),
@@ -259,7 +259,7 @@ module specular_power #(
       .clk(clk),
       .a(exp_slope_p20),
       .b(exp_offset_p20),
-      .product(exp_fall_p23)
+      .product(exp_fall_p24)
   );
 
   delay #(
@@ -268,7 +268,7 @@ module specular_power #(
   ) u_exp_value (
       .clk(clk),
       .in (exp_value_p20),
-      .out(exp_value_p23)
+      .out(exp_value_p24)
   );
 
   delay #(
@@ -277,26 +277,26 @@ module specular_power #(
   ) u_whole (
       .clk(clk),
       .in (x_p18[LOG_BITS-1:LOG_FRACTION]),
-      .out(whole_p24)
+      .out(whole_p25)
   );
 
   always @(posedge clk) begin
-    line_p24 <= exp_value_p23 - {{EXP_VALUE_BITS - EXP_SLOPE_BITS{1'b0}},
-        exp_fall_p23[EXP_SLOPE_BITS+EXP_OFFSET_BITS-1:EXP_OFFSET_BITS]};
+    line_p25 <= exp_value_p24 - {{EXP_VALUE_BITS - EXP_SLOPE_BITS{1'b0}},
+        exp_fall_p24[EXP_SLOPE_BITS+EXP_OFFSET_BITS-1:EXP_OFFSET_BITS]};
   end
 
-  wire unused_fall = &{1'b0, exp_fall_p23[EXP_OFFSET_BITS-1:0]};
+  wire unused_fall = &{1'b0, exp_fall_p24[EXP_OFFSET_BITS-1:0]};
 
   // ---- exp_shift: by the whole part, then rounded ----
-  reg [EXP_VALUE_BITS-1:0] coarse_p25;
-  reg [1:0] fine_p25;
-  reg [EXP_VALUE_BITS-1:0] shifted_p26;
-  wire [POWER_BITS-1:0] power_p28;
+  reg [EXP_VALUE_BITS-1:0] coarse_p26;
+  reg [1:0] fine_p26;
+  reg [EXP_VALUE_BITS-1:0] shifted_p27;
+  wire [POWER_BITS-1:0] power_p29;
 
   always @(posedge clk) begin
-    coarse_p25 <= line_p24 >> {whole_p24[WHOLE_BITS-1:2], 2'b00};
-    fine_p25 <= whole_p24[1:0];
-    shifted_p26 <= coarse_p25 >> fine_p25;
+    coarse_p26 <= line_p25 >> {whole_p25[WHOLE_BITS-1:2], 2'b00};
+    fine_p26 <= whole_p25[1:0];
+    shifted_p27 <= coarse_p26 >> fine_p26;
   end
 
   round_saturate #(
@@ -306,15 +306,18 @@ module specular_power #(
       .IS_SIGNED(0)
   ) u_power (
       .clk(clk),
-      .in (shifted_p26),
-      .out(power_p28)
+      .in (shifted_p27),
+      .out(power_p29)
   );
 
   // ---- bypass: n = 1 ----
-  wire [POWER_BITS-1:0] cosine_p28;
-  wire bypass_p28;
-  reg [POWER_BITS-1:0] result_p29;
-  wire [POWER_BITS-1:0] cosine_s;
+  wire [POWER_BITS-1:0] cosine_p29;
+  wire bypass_p29;
+  reg [POWER_BITS-1:0] result_p30;
+  reg [VERSINE_BITS:0] cosine_p1;
+  wire [POWER_BITS-1:0] cosine_p3;
+
+  always @(posedge clk) cosine_p1 <= {1'b1, {VERSINE_FRACTION{1'b0}}} - {1'b0, versine};
 
   round_saturate #(
       .IN_BITS  (VERSINE_BITS + 1),
@@ -323,17 +326,17 @@ module specular_power #(
       .IS_SIGNED(0)
   ) u_cosine (
       .clk(clk),
-      .in ({1'b1, {VERSINE_FRACTION{1'b0}}} - {1'b0, versine}),
-      .out(cosine_s)
+      .in (cosine_p1),
+      .out(cosine_p3)
   );
 
   delay #(
       .BITS  (POWER_BITS),
-      .CYCLES(LATENCY - `PHONG_ROUND_SATURATE_LATENCY - 1)
+      .CYCLES(LATENCY - 1 - `PHONG_ROUND_SATURATE_LATENCY - 1)
   ) u_cosine_wait (
       .clk(clk),
-      .in (cosine_s),
-      .out(cosine_p28)
+      .in (cosine_p3),
+      .out(cosine_p29)
   );
 
   delay #(
@@ -343,12 +346,12 @@ module specular_power #(
       .clk(clk),
       .in (exponent == {{EXPONENT_BITS - EXPONENT_FRACTION - 1{1'b0}}, 1'b1,
                         {EXPONENT_FRACTION{1'b0}}}),
-      .out(bypass_p28)
+      .out(bypass_p29)
   );
 
-  always @(posedge clk) result_p29 <= bypass_p28 ? cosine_p28 : power_p28;
+  always @(posedge clk) result_p30 <= bypass_p29 ? cosine_p29 : power_p29;
 
-  assign power = result_p29;
+  assign power = result_p30;
 
 endmodule
 

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from scripts.synthesis import TECHNOLOGY
 from sim import build
 from sim.build import BuildError
 
@@ -18,7 +19,10 @@ _RULES = build.ROOT / "scripts" / "verible.rules"
 
 def verilator(source: Path) -> str:
     """What Verilator's -Wall says of the module in `source` (and of those below it)."""
-    folders = [f"-I{folder}" for folder in (build.generate_header(), build.RTL, build.SIM)]
+    folders = [build.generate_header(), build.RTL, build.SIM]
+    if source.parent == TECHNOLOGY:  # what it has comes first, on models of the chip's blocks
+        folders = [TECHNOLOGY, build.SIM / "ecp5", *folders]
+    folders = [f"-I{folder}" for folder in folders]
     top = ["--top-module", source.stem]
     try:
         build.run_tool(
@@ -44,10 +48,11 @@ def tool(name: str, *arguments) -> str:
 
 def main() -> int:
     """Run all tools; returns the exit code."""
-    designs = sorted(build.RTL.glob("*.v"))
+    designs = sorted(build.RTL.glob("*.v")) + sorted(TECHNOLOGY.glob("*.v"))
     benches = sorted(build.SIM.glob("*.v"))
     headers = sorted(build.RTL.glob("*.vh"))
-    said = [verilator(source) for source in designs + benches]
+    models = sorted((build.SIM / "ecp5").glob("*.v"))  # their names and style are Lattice's
+    said = [verilator(source) for source in designs + benches + models]
     said.append(
         tool("verible-verilog-lint", f"--rules_config={_RULES}", *designs, *headers, *benches)
     )

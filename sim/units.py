@@ -104,7 +104,7 @@ MODULES = {
     "reflection": Module(
         ("unit_x", "unit_y", "unit_z"),
         (
-            Stage("reflection.across", ("+p_p5", "+q_p5"), _sum(MUL, 1, ROUND)),
+            Stage("reflection.across", ("+p_p6", "+q_p6"), _sum(MUL, 2, ROUND)),
             Stage("reflection.versine", ("versine",), L.format("REFLECTION")),
         ),
         held=(("half_x", "`PHONG_HALF_VECTOR_BITS"), ("half_z", "`PHONG_HALF_VECTOR_BITS")),
@@ -124,8 +124,8 @@ MODULES = {
                 "specular_power.exp_lookup",
                 ("exp_value_p20", "exp_slope_p20", "exp_offset_p20"), _sum(_X, ROM),
             ),
-            Stage("specular_power.exp_refine", ("line_p24",), _LINE),
-            Stage("specular_power.exp_shift", ("power_p28",), _sum(_LINE, 2, ROUND)),
+            Stage("specular_power.exp_refine", ("line_p25",), _LINE),
+            Stage("specular_power.exp_shift", ("power_p29",), _sum(_LINE, 2, ROUND)),
             Stage("specular_power.bypass", ("power",), L.format("SPECULAR_POWER")),
         ),
         late={"exponent": _LOG},

@@ -60,7 +60,7 @@ def test_a_broken_design_fails_and_is_located(tmp_path):
     rtl = tmp_path / "rtl"
     shutil.copytree(RTL, rtl)
     text = (rtl / "reflection.v").read_text()
-    broken = text.replace(".b(p_p5)", ".b(q_p5)")
+    broken = text.replace(".b(p_p6)", ".b(q_p6)")
     assert broken != text
     (rtl / "reflection.v").write_text(broken)
     frame = front_end(load_scene("sphere", (64, 48))).frame

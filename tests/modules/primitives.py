@@ -160,19 +160,19 @@ async def memory(dut, name):
 @cocotb.test()
 @cocotb.parametrize(name=_of("normal_interpolator"))
 async def normal_interpolator(dut, name):
-    """Random loads and advances; overflow stays once the sum has left the word, until a load."""
+    """Random values, loaded or summed; overflow stays once a sum left the word, until a load."""
     bits = INSTANCES[name].parameters["NORMAL_BITS"]
     rng = np.random.default_rng(SEED)
     n = RANDOM
     start, step = (_signed(_corners(rng, bits, n), bits) for _ in range(2))
     step = np.where(rng.random(n) < 0.5, step >> rng.integers(0, bits, n), step)
     load = rng.random(n) < 0.15
-    load[0] = True
     advance = rng.random(n) < 0.7
+    load[0] = advance[0] = True
     value, overflow = np.empty(n, np.int64), np.empty(n, np.int64)
     exact = held = 0
     for k in range(n):
-        if load[k]:
+        if advance[k] and load[k]:
             exact, held, over = int(start[k]), int(step[k]), False
         elif advance[k]:
             exact += held

@@ -1,0 +1,58 @@
+// harness: phong_pipeline between two shift registers, so that three pins are enough to place and
+// route it. Every port of the pipeline has a register of its own next to it: no pin is on a timed
+// path that matters, nothing is constant and nothing is unused. Not part of the design.
+`default_nettype none
+`include "phong_config.vh"
+
+module harness #(
+    parameter WRITE_ADDRESS_BITS = `PHONG_MATERIAL_BITS + `PHONG_WEIGHT_INDEX_BITS + 1,
+    parameter WRITE_WORD_BITS    = 2 * `PHONG_COEFFICIENT_BITS + 1,
+    parameter SPAN_BITS          = `PHONG_SPAN_BITS,
+    parameter PIXEL_BITS         = 2 * `PHONG_COORDINATE_BITS + 3 * `PHONG_COLOUR_BITS
+) (
+    input  wire clk,
+    input  wire in,   // shifted into the inputs
+    output wire out   // shifted out, the outputs folded in
+);
+
+  localparam INPUTS = 5 + WRITE_ADDRESS_BITS + WRITE_WORD_BITS + SPAN_BITS;
+  localparam OUTPUTS = 4 + PIXEL_BITS;
+
+  reg [INPUTS-1:0] inputs;
+  reg [OUTPUTS-1:0] outputs;
+  wire reset, write_enable, span_valid, span_last, pixel_ready;
+  wire [WRITE_ADDRESS_BITS-1:0] write_address;
+  wire [WRITE_WORD_BITS-1:0] write_word;
+  wire [SPAN_BITS-1:0] span;
+  wire [OUTPUTS-1:0] driven;
+
+  assign {reset, write_enable, span_valid, span_last, pixel_ready, write_address, write_word,
+          span} = inputs;
+
+  phong_pipeline dut (
+      .clk(clk),
+      .reset(reset),
+      .write_enable(write_enable),
+      .write_address(write_address),
+      .write_word(write_word),
+      .s_axis_tvalid(span_valid),
+      .s_axis_tready(driven[0]),
+      .s_axis_tdata(span),
+      .s_axis_tlast(span_last),
+      .m_axis_tvalid(driven[1]),
+      .m_axis_tready(pixel_ready),
+      .m_axis_tdata(driven[OUTPUTS-1:4]),
+      .m_axis_tlast(driven[2]),
+      .illegal_span(driven[3])
+  );
+
+  always @(posedge clk) begin
+    inputs <= {inputs[INPUTS-2:0], in};
+    outputs <= {outputs[OUTPUTS-2:0], 1'b0} ^ driven;
+  end
+
+  assign out = outputs[OUTPUTS-1];
+
+endmodule
+
+`default_nettype wire

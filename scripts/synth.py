@@ -1,0 +1,90 @@
+"""Synthesize, place and route a configuration for an ECP5 and report: `make synth`.
+
+Exit code: 0; 1 if a tool failed; 2 if the input is wrong, with one line on stderr that says what.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from rich.console import Console
+from rich.table import Table
+
+from model.config import DEFAULT, Config
+from model.frame import InputError
+from scripts import synthesis
+from scripts.run import Steps
+
+CONFIGS = {config.name: config for config in (DEFAULT,)}
+
+
+class _Parser(argparse.ArgumentParser):
+    """Reports a wrong command line like any other wrong input."""
+
+    def error(self, message):
+        raise InputError(message)
+
+
+def parse(argv) -> tuple[Config, int, tuple[int, ...]]:
+    """Configuration, speed grade and seeds that `argv` asks for. Raises InputError."""
+    parser = _Parser(prog="synth", description=__doc__.partition("\n")[0])
+    parser.add_argument("--config", default="", help="name of a configuration")
+    parser.add_argument("--grade", default="", help="speed grade of the chip")
+    parser.add_argument("--seeds", default="", help="how many seeds to route")
+    given = parser.parse_args(argv)
+    name, grade, seeds = given.config or "default", given.grade or "6", given.seeds or "3"
+    if name not in CONFIGS:
+        raise InputError(f"CONFIG is `{name}`; there is {', '.join(CONFIGS)}")
+    if grade not in map(str, synthesis.GRADES):
+        raise InputError(f"GRADE is `{grade}`; it must be 6 or 8")
+    if not (seeds.isascii() and seeds.isdigit() and 1 <= int(seeds) <= 100):
+        raise InputError(f"SEEDS is `{seeds}`, not a number from 1 to 100")
+    return CONFIGS[name], int(grade), tuple(range(1, int(seeds) + 1))
+
+
+def table(report: dict) -> Table:
+    """What there is to see of `report` in a terminal."""
+    used, clock = report["resources"], report["fmax_mhz"]
+    reported = report["fmax_reported_mhz"]
+    worst = min(report["seeds"], key=lambda seed: seed["fmax_mhz"])["critical_path"]
+    out = Table(title=f"{report['config']} on {report['device']}, grade {report['grade']}")
+    out.add_column("what")
+    out.add_column("value", justify="right")
+    out.add_row("LUT4 / carry cells / LUT RAM", f"{used['lut']} / {used['carry']} / "
+                f"{used['lut_ram']}")  # fmt: skip
+    out.add_row("LUT sites, carry and RAM included", str(used["lut_sites"]))
+    out.add_row("FF", str(used["ff"]))
+    out.add_row("MULT18X18D", str(used["dsp"]))
+    out.add_row("EBR", str(used["ebr"]))
+    out.add_row("Fmax reported, median (best)", f"{reported['median']} ({reported['best']}) MHz")
+    out.add_row(f"clamped by the {report['limit_by']}'s {report['limit_mhz']} MHz",
+                f"{clock['median']} ({clock['best']}) MHz")  # fmt: skip
+    out.add_row("pixels", f"{report['pixels_per_s'] / 1e6:.1f} M/s")
+    for size, rate in report["frames_per_s"].items():
+        out.add_row(f"frames {size}", f"{rate}/s")
+    out.add_row("longest path", f"{worst['from']['module']} to {worst['to']['module']}, "
+                f"{worst['delay_ns']} ns")  # fmt: skip
+    return out
+
+
+def main(argv=None) -> int:
+    """Run with the command line `argv`; returns the exit code."""
+    try:
+        config, grade, seeds = parse(argv)
+    except InputError as error:
+        print(f"Error: {error}", file=sys.stderr)
+        return 2
+    steps = Steps()
+    try:
+        report = synthesis.run(config, grade, seeds, steps.step)
+    except synthesis.SynthesisError as error:
+        print(f"Error: {error}", file=sys.stderr)
+        return 1
+    Console().print(table(report))
+    print(f"build/synth/{config.name}/report.json")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,81 @@
+"""The modules of rtl/ecp5/ against what they stand for, on our own models of the chip's blocks."""
+
+from __future__ import annotations
+
+import shutil
+
+import numpy as np
+import pytest
+
+from model.config import DEFAULT as C
+from model.scene import load_scene
+from model.scene_to_spans import front_end
+from model.twin import render
+from scripts import synth, synthesis
+from sim import primitives
+from sim.build import RTL, SIM, Bench
+from sim.run_frame import Job, simulate_jobs
+from tests.test_modules import run
+
+
+@pytest.fixture(scope="module")
+def ecp5(tmp_path_factory):
+    """A copy of the design with the technology's modules in it, and models of the blocks."""
+    folder = tmp_path_factory.mktemp("ecp5")
+    files = [*synthesis.sources(), *RTL.glob("*.vh"), *(SIM / "ecp5").glob("*.v")]
+    for file in files:
+        shutil.copy(file, folder)
+    return folder
+
+
+def test_same_as_the_behavioural_modules(ecp5, tmp_path):
+    """The very tests of multiplier, rom and ram: exhaustive on short words, random on 18 x 18."""
+    top = primitives.TOP
+    bench = Bench(top, sources={f"{top}.v": primitives.source()}, rtl=ecp5)
+    run(bench, "primitives", "tests.modules.primitives", tmp_path)
+
+
+def test_whole_frame(ecp5):
+    frame = front_end(load_scene("teapot", (160, 120))).frame
+    result = simulate_jobs([Job(frame)], bench=Bench("frame_bench", C, rtl=ecp5))[0]
+    want = render(frame, C)
+    assert result.complete and np.array_equal(result.pixels.rgb, want.rgb)
+    assert np.array_equal(result.pixels.x, want.x) and np.array_equal(result.pixels.y, want.y)
+
+
+def test_the_technology_replaces_what_it_has():
+    plain, ecp5 = ({f.name: f for f in synthesis.sources(t)} for t in (None, RTL / "ecp5"))
+    assert set(ecp5) - set(plain) == {"block_ram.v"} and "harness.v" not in ecp5
+    replaced = {name for name in plain if ecp5[name] != plain[name]}
+    assert replaced == {"multiplier.v", "rom.v", "ram.v"}
+
+
+def test_clock_is_clamped_by_the_slowest_block():
+    assert synthesis.clock_limit({"dsp": 1, "ebr": 1}, 6) == (212, "block RAM")
+    assert synthesis.clock_limit({"dsp": 1, "ebr": 0}, 8) == (380, "multiplier")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["--config=nope"], ["--grade=7"], ["--seeds=0"], ["--seeds=x"], ["--what"], ["--config"]],
+)
+def test_wrong_input_is_one_line(arguments, capsys):
+    assert synth.main(arguments) == 2
+    said = capsys.readouterr()
+    assert said.out == "" and said.err.count("\n") == 1
+
+
+def _routed(seed, mhz):
+    return {"key": "k", "seed": seed, "fmax_mhz": mhz, "used": {"TRELLIS_COMB": 110}, "seconds": 1}
+
+
+def test_summary_takes_the_median_of_clamped_clocks():
+    synthesis_of = {
+        "resources": {"lut": 60, "ebr": 1, "dsp": 1}, "harness": {"lut": 10}, "seconds": 2,
+    }  # fmt: skip
+    routed = [_routed(1, 230), _routed(2, 190), _routed(3, 220)]
+    report = synthesis.summary(C, 6, synthesis_of, routed)
+    assert report["fmax_reported_mhz"] == {"median": 220, "best": 230, "worst": 190}
+    assert report["fmax_mhz"] == {"median": 212, "best": 212, "worst": 190}
+    assert report["pixels_per_s"] == 212_000_000 and report["resources"]["lut_sites"] == 100
+    assert report["frames_per_s"]["1920x1080"] == 102.2
