@@ -28,8 +28,9 @@ module normal_interpolator #(
   reg carry_next;  // from low to low_next
   reg [HIGH_BITS-1:0] high;
 
-  wire [LOW_BITS-1:0] low_from = load ? start[LOW_BITS-1:0] : low_next;
-  wire [LOW_BITS-1:0] low_step = load ? step[LOW_BITS-1:0] : step_held[LOW_BITS-1:0];
+  // A sum each for a load and for a step: choosing comes after the sums, since load is late.
+  wire [LOW_BITS:0] low_loaded = {1'b0, start[LOW_BITS-1:0]} + {1'b0, step[LOW_BITS-1:0]};
+  wire [LOW_BITS:0] low_stepped = {1'b0, low_next} + {1'b0, step_held[LOW_BITS-1:0]};
   wire [HIGH_BITS-1:0] high_sum =
       high + step_held[SIGN:LOW_BITS] + {{HIGH_BITS - 1{1'b0}}, carry_next};
 
@@ -38,8 +39,8 @@ module normal_interpolator #(
   always @(posedge clk) begin
     if (advance) begin
       if (load) step_held <= step;
-      low <= low_from;
-      {carry_next, low_next} <= {1'b0, low_from} + {1'b0, low_step};
+      low <= load ? start[LOW_BITS-1:0] : low_next;
+      {carry_next, low_next} <= load ? low_loaded : low_stepped;
       high <= load ? start[SIGN:LOW_BITS] : high_sum;
     end
   end

@@ -40,9 +40,8 @@ module span_walker #(
   reg at_end;  // the pixel at the outputs is the last of its span, or there is none
   reg next_ends;  // the pixel after it is
   reg [COORDINATE_BITS:0] remaining;  // pixels of the span after this one
-  reg [1:0] beyond;  // of pixel_x: how often it left the counter
+  reg [1:0] beyond;  // of pixel_x: how often it left the counter; all ones for an empty span
   reg last;
-  reg empty;
   reg ended;  // a span did, one clock ago
   reg illegal;  // it was
 
@@ -58,13 +57,12 @@ module span_walker #(
   always @(posedge clk) begin
     if (advance) begin
       if (load) begin
-        {beyond, pixel_x} <= {2'b0, span_x};
+        {beyond, pixel_x} <= {{2{span_length == 0}}, span_x};
         pixel_y <= span_y;
         pixel_material <= span_material;
         last <= span_last;
         remaining <= span_length - 1'b1;
         next_ends <= span_length == 2;
-        empty <= span_length == 0;
       end else begin
         {beyond, pixel_x} <= {beyond, pixel_x} + 1'b1;
         remaining <= remaining - 1'b1;
@@ -81,7 +79,7 @@ module span_walker #(
     end
 
     ended <= ~reset & pixel_valid & at_end;
-    illegal <= empty | (beyond != 0) | overflow;
+    illegal <= (beyond != 0) | overflow;
   end
 
   assign illegal_span = ended & illegal;
