@@ -1,5 +1,5 @@
-// Properties of phong_pipeline, at the end of its text, with the datapath cut away: any
-// colour comes. Spans at one port are pixels at the other, in order, and the first comes after a constant
+// Properties of phong_pipeline, at the end of its text, with the datapath cut away: any colour
+// comes. Spans at one port are pixels at the other, in order, and the first comes after a constant
 // time. That the parts do this is proven of them without a bound; this is about their wiring.
 
   localparam F_FIRST = `PHONG_PIXEL_LATENCY + 3;
