@@ -132,7 +132,7 @@ def run(
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     if proof.mode == "structure":
-        failed = "ERROR: Assertion failed" in said and "assert-none" in said
+        failed = "Assertion failed: selection is not empty" in said
         outcome = "pass" if status == 0 else "fail" if failed else "error"
         properties = ("no_path",) if failed else ()
     else:
