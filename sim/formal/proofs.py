@@ -132,7 +132,7 @@ PROOFS = (
     ),
     Proof(
         "back to back", "spans of one pixel follow each other and leave with no clock between",
-        "phong_pipeline", "cover", 12, "latency 4", latency=4,
+        "phong_pipeline", "cover", 14, "latency 4", latency=4,
         twins=(Twin("span_walker", "span_ready = ~busy | (credit & at_end);",
                     "span_ready = ~busy;", "c_back_to_back"),),
     ),
