@@ -76,7 +76,7 @@
   reg f_timed = 1'b0;  // a span was taken when nothing was owed, f_time clocks ago
   reg [7:0] f_time;
   reg [7:0] f_flow;  // clocks in a row with a span offered and the output ready
-  reg f_single;  // all spans since reset have one pixel
+  reg f_single;  // since reset all spans have one pixel, and the output was ready
   reg [2:0] f_run;  // pixels that left in a row
   reg f_stalled;
   reg [PIXEL_BITS:0] f_out;
@@ -87,7 +87,7 @@
     f_time <= f_timed ? f_time + 1'b1 : 1;
     if (reset || !s_axis_tvalid || !m_axis_tready) f_flow <= 0;
     else if (f_flow != F_FIRST + 1) f_flow <= f_flow + 1'b1;
-    f_single <= reset || (f_single && (!f_takes || span_length == 1));
+    f_single <= reset || (f_single && m_axis_tready && (!f_takes || span_length == 1));
     f_run <= !reset && f_leaves ? f_run + (f_run != 7) : 0;
     f_stalled <= m_axis_tvalid & ~m_axis_tready & ~reset;
     f_out <= {m_axis_tlast, m_axis_tdata};

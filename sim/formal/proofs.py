@@ -67,10 +67,10 @@ _WALKER_TWINS = (
     Twin("span_walker", "pixel_valid = busy & credit;", "pixel_valid = busy;", "a_credit"),
     Twin("span_walker", "span_ready = ~busy | (credit & at_end);", "span_ready = ~busy;",
          "a_ready"),
-    Twin("span_walker", "at_end <= remaining == 1;", "at_end <= remaining == 2;", "a_no_bubble"),
+    Twin("span_walker", "at_end <= remaining == 1;", "at_end <= remaining == 2;", "a_ready"),
     Twin("span_walker", "pixel_x <= pixel_x + 1'b1;", "pixel_x <= pixel_x;", "a_place"),
     Twin("span_walker", "illegal <= illegal | (&pixel_x);", "illegal <= &pixel_x;", "a_illegal"),
-    Twin("span_walker", "if (reset) busy <=", "if (1'b0) busy <=", "a_no_bubble"),
+    Twin("span_walker", "if (reset) busy <=", "if (1'b0) busy <=", "a_ready"),
 )  # fmt: skip
 _INTERPOLATOR_TWINS = (
     Twin("normal_interpolator", "overflow <= overflow | wraps;", "overflow <= wraps;", "a_flagged"),
