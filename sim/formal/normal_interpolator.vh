@@ -1,7 +1,7 @@
 // Properties of normal_interpolator, at the end of its text. f_exact is start + k * step in a word
 // that no span can leave; k is the number of steps since load. f_exact moves one way only, so it is
 // in format at all pixels of a span iff it is at the first and the last: that is a legal span.
-// Uses one name inside: step_held.
+// Uses these names inside: step_held, low, low_next, carry_next, stepped, sign_before, left.
 
   localparam F_STEP_BITS = `PHONG_COORDINATE_BITS + 1;  // k is less than the length's 2^13
   localparam F_BITS = NORMAL_BITS + F_STEP_BITS + 1;
@@ -14,7 +14,7 @@
   reg [F_STEP_BITS-1:0] f_k;
 
   always @(posedge clk) begin
-    if (load) begin
+    if (advance && load) begin
       f_loaded <= 1'b1;
       f_exact <= $signed(start);
       f_step <= step;
@@ -28,6 +28,8 @@
   // span_walker's property a_advance: one step fewer than the length, which has F_STEP_BITS bits.
   always @(*) assume (!(f_loaded && advance && !load) || f_k < (1 << F_STEP_BITS) - 2);
 
+  wire signed [F_BITS-1:0] f_before = stepped ? f_exact - f_step : 0;
+  wire f_before_in_format = f_before >= F_MIN && f_before <= F_MAX;
   wire f_in_format = f_exact >= F_MIN && f_exact <= F_MAX;
   always @(*) begin
     if (f_loaded) begin
@@ -45,6 +47,10 @@
     if (f_loaded) begin
       i_step : assert (f_step == step_held);
       i_value : assert (value == f_exact[NORMAL_BITS-1:0]);
+      i_low : assert ({carry_next, low_next} == {1'b0, low} + {1'b0, step_held[LOW_BITS-1:0]});
+      i_left : assert (!left || (stepped && !f_in_format));
+      i_before : assert (!stepped || sign_before == f_before[NORMAL_BITS-1]);
+      i_stepped : assert (stepped == (f_k != 0) && left == !f_before_in_format);
       i_one_way : assert (f_in_format || (f_exact > F_MAX ? f_step > 0 : f_step < 0));
       i_bound : assert (f_exact >= -f_bound && f_exact <= f_bound);
     end

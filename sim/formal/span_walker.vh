@@ -1,6 +1,6 @@
 // Properties of span_walker, at the end of its text: a span is exactly its pixels, one whenever
 // there is credit, and the next span starts with no clock between.
-// Uses these names inside: busy, at_end, remaining, last, illegal.
+// Uses these names inside: busy, at_end, next_ends, remaining, last, beyond.
 
   localparam F_BITS = COORDINATE_BITS + 2;
   localparam [F_BITS-1:0] F_WIDTH = 1 << COORDINATE_BITS;
@@ -18,6 +18,7 @@
   reg f_bad;  // it is empty or leaves the counter
   reg f_flag;  // the last pixel of an illegal span left a clock ago
   wire f_final = f_active & credit & (f_left == 1);
+  wire f_free = !f_active | (f_left == 1);  // a span may come in with the next credit
   wire f_takes = span_valid & span_ready;
 
   always @(posedge clk) begin
@@ -44,12 +45,12 @@
     if (f_past) begin
       a_credit : assert (!pixel_valid || credit);
       a_no_bubble : assert (pixel_valid == (f_active & credit));
-      a_ready : assert (span_ready == (!f_active | f_final));
+      a_ready : assert (span_ready == (credit & f_free));
       a_place : assert (!f_active || (pixel_x == f_x && pixel_y == f_y));
       a_material : assert (!f_active || pixel_material == f_material);
       a_last : assert (!f_active || pixel_last == (f_last && f_left == 1));
-      a_load : assert (load == f_takes);
-      a_advance : assert (advance == (pixel_valid && f_left != 1));
+      a_load : assert (load == f_free);
+      a_advance : assert (advance == credit);
       a_illegal : assert (illegal_span == f_flag);
       c_illegal : cover (illegal_span);
     end
@@ -64,14 +65,15 @@
   // ---- invariants that make these inductive ----
   always @(*) begin
     if (f_past) begin
-      i_busy : assert (busy == f_active);
+      i_busy : assert (busy == f_active && at_end == f_free);
       if (f_active) begin
-        i_left : assert (f_left != 0 && at_end == (f_left == 1));
+        i_left : assert (f_left != 0 && next_ends == (f_left == 2));
         i_remaining : assert (f_left == 1 || remaining == f_left - 1'b1);
         i_last : assert (last == f_last);
         // What the counter has seen, and what it will see.
-        i_bad : assert (f_bad == (illegal || pixel_x + f_left > F_WIDTH));
-        i_length : assert (f_left < 2 * F_WIDTH);
+        i_bad : assert (f_bad == (beyond != 0 || pixel_x + f_left > F_WIDTH));
+        i_length : assert (f_left < 2 * F_WIDTH && (beyond == 0 || f_bad));
+        i_beyond : assert (&beyond ? f_left == 1 : {1'b0, beyond, pixel_x} + f_left < 3 * F_WIDTH);
       end
     end
   end
