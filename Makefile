@@ -16,7 +16,7 @@ PYTHON := .venv/bin/python
 quote = '$(subst ','\'',$(1))'
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test lint results bench synth coverage activity mutate waves clean
+.PHONY: help setup run test lint results bench synth formal coverage activity mutate waves clean
 
 help: ## this list
 	@echo 'make run      render SCENE through the RTL and the model, compare, write pictures and report'
@@ -38,6 +38,7 @@ help: ## this list
 	@echo 'make activity register toggles a pixel of every bundled scene'
 	@echo 'make waves    MODULE=phong_pipeline: a waveform of a short run, grouped for GTKWave'
 	@echo 'make mutate   change each constant of rtl/ by one and run the module tests: slow; FILES=, SAMPLE='
+	@echo 'make formal   prove flow control and the interpolators, and that broken designs fail (minutes)'
 	@echo 'make setup    install the pinned packages into .venv; the other targets do this by themselves'
 	@echo 'make clean    remove build/ (.venv stays)'
 
@@ -77,6 +78,8 @@ waves: setup
 mutate: setup
 	@$(PYTHON) -m scripts.mutate_constants $(if $(FILES),--files $(FILES)) \
 	  $(if $(SAMPLE),--sample $(SAMPLE))
+formal: setup
+	@$(PYTHON) -m scripts.formal
 
 clean:
 	@rm -rf build .hypothesis .ruff_cache

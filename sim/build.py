@@ -127,16 +127,21 @@ class Bench(Verilator):
         rtl: Path = RTL,
         trace: bool = False,
         coverage: Path | None = None,
-        lint: bool = True,
+        netlist: bool = False,
     ):
         """A bench with top level `top`: sim/<top>.v, a module of the design, or a text in
         `sources` (file name: text).
 
         rtl: folder of the design (a mutated copy, say). trace: able to write a VCD.
-        coverage: folder for the coverage counts of each run. lint: whether warnings are errors
-        (not in a netlist).
+        coverage: folder for the coverage counts of each run. netlist: rtl holds a netlist: no
+        lint, and a compiler that is done sooner.
         """
-        self._warnings = ["-Wall"] if lint else ["-Wno-lint", "-Wno-style", "-Wno-fatal"]
+        self._verilator = (
+            ["-Wno-lint", "-Wno-style", "-Wno-fatal", "--output-split-cfuncs", "200"]
+            if netlist
+            else ["-Wall"]
+        )
+        self._cxx = CXX_FLAGS.replace("-O2", "-O1") if netlist else CXX_FLAGS
         super().__init__()
         self._top, self._config, self._rtl, self._trace = top, config, rtl, trace
         self._texts = dict(sources or {})
@@ -178,7 +183,7 @@ class Bench(Verilator):
                 _VERILATOR_ROOT / "bin" / "verilator", "--cc", "--vpi", "--prefix", "Vtop",
                 "--top-module", self._top, "--Mdir", self.folder, "-O3",
                 "--x-assign", "unique", "--x-initial", "unique", "--no-timing",
-                "--output-split", "0", "--public-depth", "1", *self._warnings,
+                "--output-split", "0", "--public-depth", "1", *self._verilator,
                 *(["--trace"] if self._trace else []),
                 *(["--coverage-line", "--coverage-toggle"] if self._coverage else []),
                 f"-I{self._include}", f"-I{self._rtl}", f"-I{SIM}", f"-I{self.folder}",
@@ -192,7 +197,7 @@ class Bench(Verilator):
         part = self.folder / f"{self._top}.{os.getpid()}"
         run_tool(
             [
-                "g++", *CXX_FLAGS.split(), "-DVERILATOR=1", f"-DVM_TRACE={int(self._trace)}",
+                "g++", *self._cxx.split(), "-DVERILATOR=1", f"-DVM_TRACE={int(self._trace)}",
                 f"-DVM_COVERAGE={int(bool(self._coverage))}",
                 f"-DVM_TRACE_VCD={int(self._trace)}", f"-I{include}", f"-I{include / 'vltstd'}",
                 f"-I{self.folder}", "-o", part, whole, SIM / "main.cpp", library,

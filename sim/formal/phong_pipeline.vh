@@ -1,0 +1,108 @@
+// Properties of phong_pipeline, at the end of its text, with the datapath cut away: any colour
+// comes. Spans at one port are pixels at the other, in order, and the first comes after a constant
+// time. That the parts do this is proven of them without a bound; this is about their wiring.
+
+  localparam F_FIRST = `PHONG_PIXEL_LATENCY + 3;
+  localparam F_BITS = COORDINATE_BITS + 4;
+  localparam F_PLACE_BITS = 2 * COORDINATE_BITS + 1;
+  localparam F_WIDE = NORMAL_BITS + COORDINATE_BITS + 2;
+  localparam signed [F_WIDE-1:0] F_MAX = (1 << (NORMAL_BITS - 1)) - 1;
+  localparam signed [F_WIDE-1:0] F_MIN = -(1 << (NORMAL_BITS - 1));
+
+  reg f_past = 1'b0;
+  always @(posedge clk) f_past <= 1'b1;
+  always @(*) if (!f_past) assume (reset);
+
+  wire f_takes = s_axis_tvalid & s_axis_tready;
+  wire f_leaves = m_axis_tvalid & m_axis_tready;
+  wire [COORDINATE_BITS:0] f_pixels = span_length == 0 ? 1 : span_length;
+
+  // ---- pixels owed, and one of them, of any span, that is followed ----
+  reg [F_BITS-1:0] f_owed;  // spans that would count it over do not come
+  always @(*) if (f_past) assume (!f_takes || !f_owed[F_BITS-1]);
+  (* anyconst *) wire [COORDINATE_BITS:0] f_k;  // its number in the span
+  (* anyseq *) wire f_pick;
+  reg f_followed = 1'b0;
+  reg [F_BITS-1:0] f_ahead;
+  reg [F_PLACE_BITS-1:0] f_place;
+
+  always @(posedge clk) begin
+    f_owed <= f_owed + (f_takes ? f_pixels : 0) - f_leaves;
+    if (f_followed) begin
+      f_ahead <= f_ahead - f_leaves;
+      if (f_leaves && f_ahead == 0) f_followed <= 1'b0;
+    end else if (f_takes && f_pick && f_k < f_pixels) begin
+      f_followed <= 1'b1;
+      f_ahead <= f_owed - f_leaves + f_k;
+      f_place[F_PLACE_BITS-1] <= s_axis_tlast && f_k == f_pixels - 1'b1;
+      f_place[2*COORDINATE_BITS-1:COORDINATE_BITS] <= span_y;
+      f_place[COORDINATE_BITS-1:0] <= span_x + f_k;
+    end
+    if (reset) begin
+      f_owed <= 0;
+      f_followed <= 1'b0;
+    end
+  end
+
+  // ---- exact components ----
+  reg f_active;
+  reg [COORDINATE_BITS:0] f_left;  // pixels of the span that have not gone in
+  reg f_bad, f_flag;
+  reg signed [F_WIDE-1:0] f_x, f_y, f_z;
+  reg signed [NORMAL_BITS-1:0] f_step_x, f_step_y, f_step_z;
+  wire f_outside = f_x > F_MAX || f_x < F_MIN || f_y > F_MAX || f_y < F_MIN ||
+      f_z > F_MAX || f_z < F_MIN;
+
+  always @(posedge clk) begin
+    f_flag <= !reset && pixel_valid && f_left == 1 && (f_bad || f_outside);
+    if (f_takes) begin
+      f_left <= f_pixels;
+      f_bad <= span_length == 0 || {2'b00, span_x} + span_length > 1 << COORDINATE_BITS;
+      f_x <= $signed(start_x);
+      f_y <= $signed(start_y);
+      f_z <= $signed(start_z);
+      f_step_x <= step_x;
+      f_step_y <= step_y;
+      f_step_z <= step_z;
+    end else if (pixel_valid) begin
+      f_left <= f_left - 1'b1;
+      f_x <= f_x + f_step_x;
+      f_y <= f_y + f_step_y;
+      f_z <= f_z + f_step_z;
+    end
+  end
+
+  // ---- time ----
+  reg f_timed = 1'b0;  // a span was taken when nothing was owed, f_time clocks ago
+  reg [7:0] f_time;
+  reg [7:0] f_flow;  // clocks in a row with a span offered and the output ready
+  reg f_single;  // since reset all spans have one pixel, and the output was ready
+  reg [2:0] f_run;  // pixels that left in a row
+  reg f_stalled;
+  reg [PIXEL_BITS:0] f_out;
+
+  always @(posedge clk) begin
+    if (reset || (f_timed && f_time == F_FIRST)) f_timed <= 1'b0;
+    else if (f_takes && f_owed == 0) f_timed <= 1'b1;
+    f_time <= f_timed ? f_time + 1'b1 : 1;
+    if (reset || !s_axis_tvalid || !m_axis_tready) f_flow <= 0;
+    else if (f_flow != F_FIRST + 1) f_flow <= f_flow + 1'b1;
+    f_single <= reset || (f_single && m_axis_tready && (!f_takes || span_length == 1));
+    f_run <= !reset && f_leaves ? f_run + (f_run != 7) : 0;
+    f_stalled <= m_axis_tvalid & ~m_axis_tready & ~reset;
+    f_out <= {m_axis_tlast, m_axis_tdata};
+  end
+
+  // ---- the properties ----
+  always @(*) begin
+    if (f_past) begin
+      a_order_and_place : assert (!(f_followed && f_ahead == 0 && m_axis_tvalid) ||
+          {m_axis_tlast, m_axis_tdata[PIXEL_BITS-1:3*COLOUR_BITS]} == f_place);
+      a_nothing_from_nowhere : assert (!m_axis_tvalid || f_owed != 0);
+      a_stable : assert (!f_stalled || (m_axis_tvalid && {m_axis_tlast, m_axis_tdata} == f_out));
+      a_latency : assert (!f_timed || m_axis_tvalid == (f_time == F_FIRST));
+      a_full_rate : assert (f_flow != F_FIRST + 1 || m_axis_tvalid);
+      a_illegal : assert (illegal_span == f_flag);
+      c_back_to_back : cover (f_single && f_run == 3);
+    end
+  end

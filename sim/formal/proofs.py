@@ -1,0 +1,143 @@
+"""What is proven, at which size, and which broken design must fail it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Twin:
+    """A broken design: the one place in rtl/`module`.v where `old` stands reads `new`.
+
+    `breaks`: the property that must be reported as failed within `depth` clocks from reset, the
+    first `skip` of which are not looked at.
+    """
+
+    module: str
+    old: str
+    new: str
+    breaks: str
+    depth: int = 12
+    skip: int = 0
+
+
+@dataclass(frozen=True)
+class Proof:
+    """A claim about module `top`, whose properties stand in sim/formal/<top>.vh.
+
+    mode: "prove" (k-induction, no bound), "bmc" (the first `depth` clocks), "cover" (reachable), or
+    "structure" (of the flattened netlist: `script` is Yosys's, and fails if the claim does).
+    parameters: of `top`. latency: of the pixel, in place of the real one; 0: the real one.
+    """
+
+    name: str
+    claim: str
+    top: str
+    mode: str
+    depth: int = 1
+    size: str = ""
+    parameters: Mapping[str, int] = field(default_factory=dict)
+    latency: int = 0
+    script: str = ""
+    fast: bool = True
+    twins: tuple[Twin, ...] = ()
+
+
+_NARROW = {"COORDINATE_BITS": 1, "COLOUR_BITS": 1}  # data are only carried
+_FIFO = "no pixel lost, repeated, reordered; stable while stalled; no overflow; constant latency"
+_FIFO_TWINS = (
+    Twin(
+        "pixel_fifo", "if (pop) read_slot <=", "if (pop & ~pixel_valid) read_slot <=",
+        "a_order_and_place", 16,
+    ),
+    Twin("pixel_fifo", "if (pixel_valid) place_slot <=", "if (pixel_valid & ~pop) place_slot <=",
+         "a_order_and_place", 16),
+    Twin("pixel_fifo", "if (reset) in_flight <=", "if (1'b0) in_flight <=",
+         "a_nothing_from_nowhere"),
+    Twin("pixel_fifo", "ALL = SLOTS;", "ALL = SLOTS + 1;", "a_no_overflow", 22, 20),
+    Twin("pixel_fifo", "out_valid <= pop | (out_valid & ~out_ready);", "out_valid <= pop;",
+         "a_stable_valid", 16),
+    Twin("pixel_fifo", "(~out_valid | out_ready)", "1'b1", "a_stable_data", 16),
+    Twin("pixel_fifo", "colour_valid = in_flight[LATENCY-1]", "colour_valid = in_flight[LATENCY-2]",
+         "a_not_early", 16),
+    Twin("pixel_fifo", "credits <= ALL;", "credits <= LATENCY;", "a_full_rate", 16),
+)  # fmt: skip
+_READY = "span_ready = credit & at_end;"
+_WALKER_TWINS = (
+    Twin("span_walker", "pixel_valid = busy & credit;", "pixel_valid = busy;", "a_credit"),
+    Twin("span_walker", _READY, "span_ready = at_end;", "a_ready"),
+    Twin("span_walker", "next_ends <= remaining == 2;", "next_ends <= remaining == 3;", "a_ready"),
+    Twin("span_walker", "<= {beyond, pixel_x} + 1'b1;", "<= {beyond, pixel_x};", "a_place"),
+    Twin("span_walker", "illegal <= (beyond != 0) | overflow;", "illegal <= overflow;",
+         "a_illegal"),
+    Twin("span_walker", "busy <= 1'b0;", "busy <= 1'b1;", "a_no_bubble"),
+)  # fmt: skip
+_INTERPOLATOR_TWINS = (
+    Twin("normal_interpolator", "left <= ~load & overflow;", "left <= 1'b0;", "a_flagged"),
+    Twin("normal_interpolator", "(sign_before == step_held[SIGN]) &",
+         "(sign_before & step_held[SIGN]) &", "a_no_wrap"),
+)  # fmt: skip
+_PIPELINE = "spans in, their pixels out, in order, after a constant time, at full rate; flags"
+_PIPELINE_TWINS = (
+    Twin("phong_pipeline", ".overflow(overflow_x | overflow_y | overflow_z),",
+         ".overflow(overflow_x | overflow_y),", "a_illegal"),
+    Twin("phong_pipeline", ".out_ready(m_axis_tready),", ".out_ready(1'b1),", "a_stable"),
+    Twin("phong_pipeline", ".span_y(span_y),", ".span_y(span_x),", "a_order_and_place"),
+)  # fmt: skip
+
+# Clocked cells cut away, what is left between two ports is logic.
+_CUT = "delete t:$dff t:$sdff t:$dffe t:$sdffe t:$sdffce t:$mem_v2 t:$memrd_v2"
+
+
+def _no_path(source: str, target: str) -> str:
+    return (
+        f"{_CUT}; select -assert-any i:{source}; select -assert-any o:{target}; "
+        f"select -set cone o:{target} %ci*; select -assert-none @cone i:{source} %i"
+    )
+
+
+PROOFS = (
+    Proof(
+        "walker", "a span is exactly its pixels; no bubble; spans out of the counter are flagged",
+        "span_walker", "prove", 1, "12-bit coordinates, any length", twins=_WALKER_TWINS,
+    ),
+    Proof(
+        "interpolator", "no wrap in a legal span; overflow iff start + k step leaves the word",
+        "normal_interpolator", "prove", 1, "32 bits, k < 2^13", twins=_INTERPOLATOR_TWINS,
+    ),
+    Proof(
+        "fifo", _FIFO, "pixel_fifo", "prove", 1, "latency 6, 16 slots",
+        _NARROW | {"LATENCY": 6}, twins=_FIFO_TWINS,
+    ),
+    Proof(
+        "fifo, real", _FIFO, "pixel_fifo", "prove", 1, "real latency and slots", _NARROW,
+        fast=False,
+    ),
+    Proof(
+        "ready", "span_ready does not depend on span_valid", "phong_pipeline", "structure",
+        size="the whole pipeline", script=_no_path("s_axis_tvalid", "s_axis_tready"),
+        twins=(Twin("span_walker", _READY, f"span_ready = span_valid & {_READY[13:]}", "no_path"),),
+    ),
+    Proof(
+        "stall", "no logic from the output's ready to the input's ready", "phong_pipeline",
+        "structure", size="the whole pipeline",
+        script=_no_path("m_axis_tready", "s_axis_tready"),
+        twins=(Twin("phong_pipeline", "overflow_z),\n      .credit(credit)",
+                    "overflow_z),\n      .credit(credit & m_axis_tready)", "no_path"),),
+    ),
+    Proof(
+        "wiring", _PIPELINE, "phong_pipeline", "bmc", 10, "latency 3, 10 clocks from reset",
+        latency=3, fast=False, twins=_PIPELINE_TWINS,
+    ),
+    Proof(
+        "back to back", "spans of one pixel follow each other and leave with no clock between",
+        "phong_pipeline", "cover", 14, "latency 4", latency=4,
+        twins=(Twin("span_walker", "busy <= span_valid | ~load;",
+                    "busy <= span_valid & ~busy | ~load;", "c_back_to_back"),),
+    ),
+    Proof(
+        "back to back, real", "the same, with the real latency", "phong_pipeline", "cover", 90,
+        "real latency", fast=False,
+    ),
+)  # fmt: skip
