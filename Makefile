@@ -16,7 +16,7 @@ PYTHON := .venv/bin/python
 quote = '$(subst ','\'',$(1))'
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test lint results bench synth formal coverage activity mutate waves clean
+.PHONY: help setup run test lint results bench synth netlist formal coverage activity mutate waves clean
 
 help: ## this list
 	@echo 'make run      render SCENE through the RTL and the model, compare, write pictures and report'
@@ -34,6 +34,7 @@ help: ## this list
 	@echo '                CONFIG=default  a configuration by name'
 	@echo '                GRADE=6         speed grade of the chip, 6 or 8'
 	@echo '                SEEDS=3         how many placements to try; the median counts'
+	@echo 'make netlist  whole frames through the netlist in ECP5 cells, against the model'
 	@echo 'make coverage line, branch and toggle coverage of rtl/ by the module and frame tests'
 	@echo 'make activity register toggles a pixel of every bundled scene'
 	@echo 'make waves    MODULE=phong_pipeline: a waveform of a short run, grouped for GTKWave'
@@ -65,6 +66,9 @@ results: setup
 synth: setup
 	@$(PYTHON) -m scripts.synth --config=$(call quote,$(CONFIG)) --grade=$(call quote,$(GRADE)) \
 	  --seeds=$(call quote,$(SEEDS))
+
+netlist: setup
+	@$(PYTHON) -m scripts.netlist
 
 coverage: setup
 	@$(PYTHON) -m scripts.coverage

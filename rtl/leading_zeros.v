@@ -29,14 +29,12 @@ module leading_zeros #(
     end
   end
 
+  // The highest group that is not zero is the last to speak; h groups are above it.
   integer h;
   always @* begin
     count_next = {COUNT_BITS{1'b0}};
-    for (h = 0; h < GROUPS; h = h + 1) begin
-      // The sum is at most BITS, which COUNT_BITS holds.
-      // verilator lint_off WIDTHTRUNC
-      if (any_p1[h]) count_next = 4 * (GROUPS - 1 - h) + {30'b0, place_p1[h]};
-      // verilator lint_on WIDTHTRUNC
+    for (h = GROUPS - 1; h >= 0; h = h - 1) begin
+      if (any_p1[GROUPS-1-h]) count_next = {h[COUNT_BITS-3:0], place_p1[GROUPS-1-h]};
     end
   end
 

@@ -32,8 +32,9 @@ module pixel_fifo #(
     output wire                                       out_last
 );
 
-  // A slot is taken for LATENCY clocks, and for 1 to be written, 1 to be read, 1 for its credit.
-  localparam SLOTS_NEEDED = LATENCY + 3;
+  // A slot is taken for LATENCY clocks, and for 1 to be written, 1 to be read, 1 for its credit; the
+  // last free one may be given away late.
+  localparam SLOTS_NEEDED = LATENCY + 4;
   localparam BANK = 16;  // small RAMs come in sixteens
   localparam BANKS = (SLOTS_NEEDED + BANK - 1) / BANK;
   localparam SLOTS = BANK * BANKS;
@@ -60,7 +61,8 @@ module pixel_fifo #(
 
   // ---- slots ----
   // `some` and `credit` look one clock ahead from bits of the counts, not from their sums: `pop`
-  // is the start of the longest paths.
+  // is the start of the longest paths. `credit` waits with the last slot, so that it need not
+  // look at the pixel that it lets go now.
   wire pop = some & (~out_valid | out_ready);
   wire more_credits = |credits[COUNT_BITS-1:1];
   wire more_filled = |filled[COUNT_BITS-1:1];
@@ -80,7 +82,7 @@ module pixel_fifo #(
       if (colour_valid) colour_slot <= colour_slot == LAST_SLOT ? 0 : colour_slot + 1'b1;
       if (pop) read_slot <= read_slot == LAST_SLOT ? 0 : read_slot + 1'b1;
       if (pop ^ pixel_valid) credits <= credits + {{COUNT_BITS - 1{pixel_valid}}, 1'b1};
-      credit <= pop | more_credits | (credits[0] & ~pixel_valid);
+      credit <= pop | more_credits;
       if (pop ^ colour_valid) filled <= filled + {{COUNT_BITS - 1{~colour_valid}}, 1'b1};
       some <= colour_valid | more_filled | (filled[0] & ~pop);
       out_valid <= pop | (out_valid & ~out_ready);

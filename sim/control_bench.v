@@ -8,8 +8,8 @@ module control_bench #(
     parameter COORDINATE_BITS = 4,
     parameter MATERIAL_BITS   = 2,
     parameter COLOUR_BITS     = 3,
-    parameter LATENCY_FIT     = 13,
-    parameter LATENCY_OVER    = 14,
+    parameter LATENCY_FIT     = 12,
+    parameter LATENCY_OVER    = 13,
     parameter PIXEL_BITS      = 2 * COORDINATE_BITS + 3 * COLOUR_BITS
 ) (
     input wire clk,

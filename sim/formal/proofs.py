@@ -49,7 +49,7 @@ _FIFO = "no pixel lost, repeated, reordered; stable while stalled; no overflow; 
 _FIFO_TWINS = (
     Twin(
         "pixel_fifo", "if (pop) read_slot <=", "if (pop & ~pixel_valid) read_slot <=",
-        "a_order_and_place", 16,
+        "a_colour", 16,
     ),
     Twin("pixel_fifo", "if (pixel_valid) place_slot <=", "if (pixel_valid & ~pop) place_slot <=",
          "a_order_and_place", 16),

@@ -324,7 +324,7 @@ async def fifo_capacity(dut, which):
     and one waits at the output; again after a reset with pixels everywhere."""
     tb = FifoTB(dut, which, f"no room, seed {SEED}")
     await tb.start()
-    slots = -(-(tb.latency + 3) // 16) * 16
+    slots = -(-(tb.latency + 4) // 16) * 16
     for clocks in (200, 5, tb.latency + 1, tb.latency + 8, 200):
         tb.stall = pauses("never", 0) if clocks < 200 else iter([True] * 200 + [False] * 1000)
         tb.to_send = 1000

