@@ -7,6 +7,7 @@ import numpy as np
 from model import error_budget, registers, spans
 from model.config import DEFAULT as C
 from sim.build import ROOT, RTL
+from sim.formal.proofs import PROOFS
 from sim.latency import latencies
 from tests.test_error import frame_of
 
@@ -59,8 +60,15 @@ def test_the_multipliers_are_counted():
             total += times * (1 if child == "multiplier" else count(child))
         return total
 
-    assert f"The default build has {count('phong_pipeline')} multipliers" in README
+    assert f"The default configuration has {count('phong_pipeline')} multipliers" in README
     assert count("phong_pipeline") <= 19
+
+
+def test_the_proofs_are_counted():
+    unbounded = sum(proof.mode == "prove" for proof in PROOFS)
+    twins = sum(len(proof.twins) for proof in PROOFS)
+    said = f"{len(PROOFS)} proofs, {unbounded} of them by unbounded induction; {twins} broken"
+    assert said in README
 
 
 def test_the_python_example_runs(capsys):
