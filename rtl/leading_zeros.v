@@ -1,5 +1,5 @@
 // leading_zeros: number of zeros above the highest one; BITS if there is none.
-// Latency 2 (position within groups of four; first group that is not zero), one result a clock.
+// Latency below (position within groups of four; first group that is not zero), one result a clock.
 `default_nettype none
 `include "latency.vh"
 

@@ -1,5 +1,5 @@
 // left_shifter: word << count, zeros shifted in.
-// Latency 2 (multiples of four; the remainder), one result a clock.
+// Latency below (multiples of four; the remainder), one result a clock.
 `default_nettype none
 `include "latency.vh"
 

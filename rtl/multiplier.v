@@ -1,5 +1,5 @@
 // multiplier: exact product of two words that fit one 18 x 18 DSP block.
-// Latency 2 (operand register, product register), one result a clock.
+// Latency below (operand register, product register), one result a clock.
 // The registers are part of the module so that the DSP block's own can be used.
 `default_nettype none
 `include "latency.vh"

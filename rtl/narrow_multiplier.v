@@ -1,6 +1,6 @@
 // narrow_multiplier: exact product of an unsigned word and up to 8 unsigned bits, in logic.
 // A DSP block would be wasted on so few bits: 8 gated rows are added in a tree of three levels.
-// Latency 4, one result a clock.
+// Latency below, one result a clock.
 `default_nettype none
 `include "latency.vh"
 

@@ -1,5 +1,5 @@
 // ram: one write port, one registered read port, made for block RAM.
-// Read latency 2 (array register, output register), one word a clock.
+// Read latency below (array register, output register), one word a clock.
 `default_nettype none
 `include "latency.vh"
 

@@ -1,5 +1,5 @@
 // rom: constant table with a registered read, made for block RAM.
-// Latency 2 (array register, output register), one word a clock.
+// Latency below (array register, output register), one word a clock.
 `default_nettype none
 `include "latency.vh"
 

@@ -1,5 +1,5 @@
 // round_saturate: drop DROP low bits, rounded half up, and clamp to OUT_BITS.
-// Latency 2 (round, saturate), one result a clock.
+// Latency below (round, saturate), one result a clock.
 `default_nettype none
 `include "latency.vh"
 

@@ -1,5 +1,5 @@
 // small_ram: one write port, one registered read port, made for a few words in logic cells.
-// Read latency 1, one word a clock.
+// Read latency below, one word a clock.
 `default_nettype none
 `include "latency.vh"
 

@@ -166,7 +166,7 @@ def passes(name: str, rtl: Path, file: str = "") -> str:
     try:
         bench, tests = _bench(name, rtl)
         results = bench.run(
-            tests, folder, plusargs=[f"+dir={folder}"], seed=SEED,
+            tests, folder, seed=SEED,
             test_filter=rf"\.{only}\b" if name == "primitives" and file != "latency.vh" else None,
             extra_env={
                 "PHONG_MODULE": name, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)

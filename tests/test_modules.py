@@ -38,7 +38,7 @@ def run(bench: Bench, module: str, tests: str, folder) -> None:
     """Run the cocotb tests `tests` of `module` in `bench`."""
     with contextlib.suppress(SystemExit):  # how the runner says inside pytest that a test failed
         bench.run(
-            tests, folder, plusargs=[f"+dir={folder}"], seed=SEED,
+            tests, folder, seed=SEED,
             extra_env={
                 "PHONG_MODULE": module, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)
             },
