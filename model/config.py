@@ -68,6 +68,15 @@ class Format:
         return f"{'s' if self.signed else 'u'}{self.integer}.{self.fraction}"
 
 
+def choice(*names: str):
+    """A field that is one of `names`, the first by default.
+
+    In the Verilog header it becomes its place in `names`: PHONG_<FIELD>, with a macro
+    PHONG_<FIELD>_<NAME> for each name to compare it with.
+    """
+    return field(default=names[0], metadata={"names": names})
+
+
 def _signed(integer: int, fraction: int):
     return field(default=Format(True, integer, fraction))
 
@@ -81,6 +90,13 @@ class Config:
     """Formats, table sizes and features of one pipeline, in the order of the data."""
 
     name: str = "default"
+
+    def __post_init__(self):
+        for f in dataclasses.fields(self):
+            names = f.metadata.get("names")
+            if names and getattr(self, f.name) not in names:
+                said = f"{f.name} is `{getattr(self, f.name)}`, not one of {', '.join(names)}"
+                raise ValueError(said)
 
     # -- spans and pixels --------------------------------------------------------------------------
     coordinate_bits: int = 12  # x and y: pictures of up to 4096 x 4096
