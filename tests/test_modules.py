@@ -20,8 +20,8 @@ from tests.modules.frames import random_frame
 
 SEED = 75
 DATAPATH = (
-    "inverse_sqrt", "normalizer", "reflection", "specular_power", "specular_weight",
-    "shading_unit",
+    "inverse_sqrt", "normalizer", "reflection", "specular_power", "specular_cosine",
+    "specular_weight", "shading_unit",
 )  # fmt: skip
 
 
