@@ -67,6 +67,24 @@ def vanishing_exponent(config: Config) -> int:
     return (config.power.fraction + 1) << config.exponent.fraction
 
 
+#: Fields of `Config` that `prune` decides on.
+FEATURES = (
+    "specular", "power_function", "power_bypass", "log_octaves", "weight_function", "diffuse",
+    "environment", "channels", "two_sided",
+)  # fmt: skip
+
+
+def missing(frame: Frame, built: Config, config: Config = DEFAULT) -> list[str]:
+    """What `frame` needs of `config` and `built` leaves out, a line each; empty if it fits."""
+    least, rows = prune(frame, config)
+    lines = []
+    for row in rows:
+        full, here, fits = (getattr(c, row.feature) for c in (config, built, least))
+        if here != full and here != fits:
+            lines.append(f"{row.feature}: {row.why}")
+    return lines
+
+
 def _some(count: int, of: int, what: str) -> str:
     return f"{what} in {count or 'none'} of {of} material{'s' if of != 1 else ''}"
 
