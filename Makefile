@@ -16,7 +16,8 @@ PYTHON := .venv/bin/python
 quote = '$(subst ','\'',$(1))'
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test lint results bench synth netlist formal coverage activity mutate waves clean
+.PHONY: help setup run test lint results bench synth netlist icarus formal coverage activity mutate \
+  hardware waves clean
 
 help: ## this list
 	@echo 'make run      render SCENE through the RTL and the model, compare, write pictures and report'
@@ -38,7 +39,12 @@ help: ## this list
 	@echo 'make coverage line, branch and toggle coverage of rtl/ by the module and frame tests'
 	@echo 'make activity register toggles a pixel of every bundled scene'
 	@echo 'make waves    MODULE=phong_pipeline: a waveform of a short run, grouped for GTKWave'
-	@echo 'make mutate   change each constant of rtl/ by one and run the module tests: slow; FILES=, SAMPLE='
+	@echo 'make icarus   the module tests once more in Icarus Verilog, with unknown values (minutes)'
+	@echo 'make mutate   change each constant and operator of rtl/, run the module tests (an hour or two)'
+	@echo '                FILES="a b"     of these modules only'
+	@echo '                KIND=operator   or KIND=constant'
+	@echo '                SAMPLE=20       so many at random'
+	@echo 'make hardware the README'"'"'s table of hardware, proofs and tests, from the last results'
 	@echo 'make formal   prove flow control and the interpolators, and that broken designs fail (minutes)'
 	@echo 'make setup    install the pinned packages into .venv; the other targets do this by themselves'
 	@echo 'make clean    remove build/ (.venv stays)'
@@ -80,8 +86,15 @@ waves: setup
 	@$(PYTHON) -m scripts.waves $(call quote,$(MODULE))
 
 mutate: setup
-	@$(PYTHON) -m scripts.mutate_constants $(if $(FILES),--files $(FILES)) \
+	@$(PYTHON) -m scripts.mutate $(if $(FILES),--files $(FILES)) $(if $(KIND),--kind $(KIND)) \
 	  $(if $(SAMPLE),--sample $(SAMPLE))
+
+icarus: setup
+	@$(PYTHON) -m scripts.icarus
+
+hardware: setup
+	@$(PYTHON) -m scripts.records
+
 formal: setup
 	@$(PYTHON) -m scripts.formal
 

@@ -13,7 +13,8 @@ from rich.table import Table
 
 from model.config import DEFAULT, Config
 from model.frame import InputError
-from scripts import synthesis
+from scripts import records, synthesis
+from scripts.records import Row
 from scripts.run import Steps
 
 CONFIGS = {config.name: config for config in (DEFAULT,)}
@@ -68,6 +69,45 @@ def table(report: dict) -> Table:
     return out
 
 
+def rows(report: dict) -> list[Row]:
+    """The lines of `report` for the README's table."""
+    used, clock, grade = report["resources"], report["fmax_mhz"], report["grade"]
+    chip = f"{report['device']}, grade {grade}"
+    out = [
+        Row(
+            f"clock on a Lattice ECP5 {chip}",
+            f"{clock['median']} MHz, median of {len(report['seeds'])} seeds; best {clock['best']}",
+            f"an estimate of timing, no chip; nextpnr does not check the {report['limit_by']}'s "
+            f"{report['limit_mhz']} MHz, to which it is clamped",
+        )
+    ]
+    if grade == 6:
+        out += [
+            Row(
+                "multipliers, block RAMs",
+                f"{used['dsp']} MULT18X18D, {used['ebr']} DP16KD",
+                "without the harness of shift registers that stands in for pins",
+            ),
+            Row(
+                "logic",
+                f"{used['lut']} LUT4, {used['carry']} carry cells, {used['lut_ram']} LUT RAM "
+                f"cells, {used['ff']} FF",
+                f"together {used['lut_sites']} LUT sites: a carry cell takes two, a LUT RAM cell "
+                "four",
+            ),
+        ]
+    if gates := report.get("gates"):
+        out.append(
+            Row(
+                "gate equivalents (NAND2)",
+                f"{gates['equivalents']}",
+                "Oklahoma State University's 0.18 µm cells, tables and RAMs in logic and "
+                "flip-flops; before placement, no clock tree, no wires: not an area",
+            )
+        )
+    return out
+
+
 def main(argv=None) -> int:
     """Run with the command line `argv`; returns the exit code."""
     try:
@@ -82,6 +122,10 @@ def main(argv=None) -> int:
         print(f"Error: {error}", file=sys.stderr)
         return 1
     Console().print(table(report))
+    if config == DEFAULT:
+        packages = tuple(report["tools"])
+        command = "make synth" + (f" GRADE={grade}" if grade != 6 else "")
+        records.save(f"synth-grade{grade}", command, packages, rows(report))
     print(f"build/synth/{config.name}/report.json")
     return 0
 

