@@ -10,6 +10,7 @@ MODULE ?= phong_pipeline
 CONFIG ?= default
 GRADE ?= 6
 SEEDS ?= 3
+GATES ?=
 
 PYTHON := .venv/bin/python
 # An argument for the shell, whatever is in it.
@@ -35,6 +36,7 @@ help: ## this list
 	@echo '                CONFIG=default  a configuration by name'
 	@echo '                GRADE=6         speed grade of the chip, 6 or 8'
 	@echo '                SEEDS=3         how many placements to try; the median counts'
+	@echo '                GATES=1         count gate equivalents in standard cells, too (minutes)'
 	@echo 'make netlist  whole frames through the netlist in ECP5 cells, against the model'
 	@echo 'make coverage line, branch and toggle coverage of rtl/ by the module and frame tests'
 	@echo 'make activity register toggles a pixel of every bundled scene'
@@ -71,7 +73,7 @@ results: setup
 
 synth: setup
 	@$(PYTHON) -m scripts.synth --config=$(call quote,$(CONFIG)) --grade=$(call quote,$(GRADE)) \
-	  --seeds=$(call quote,$(SEEDS))
+	  --seeds=$(call quote,$(SEEDS)) --gates=$(call quote,$(GATES))
 
 netlist: setup
 	@$(PYTHON) -m scripts.netlist

@@ -376,7 +376,8 @@ def run(
 ) -> dict:  # fmt: skip
     """Synthesize, route every seed, pack the best. Returns what is in report.json.
 
-    count_gates: in standard cells, too. `step(name)` is a context around each step. Raises SynthesisError.
+    count_gates: in standard cells, too. `step(name)` is a context around each step.
+    Raises SynthesisError.
     """
     folder = BUILD / "synth" / config.name
     folder.mkdir(parents=True, exist_ok=True)
