@@ -13,9 +13,9 @@ Exit code: 0; 1 if a mutant survived that is not explained; 2 if the command lin
 from __future__ import annotations
 
 import argparse
-import contextlib
 import datetime
 import logging
+import multiprocessing
 import os
 import random
 import re
@@ -170,9 +170,10 @@ def mutants(path: Path, kinds: tuple[str, ...] = KINDS) -> list[Mutant]:
         for kind in kinds
         for begin, old, new in changes[kind](code)
     ]
-    seen: dict[str, int] = {}
+    seen: dict[tuple[str, str], int] = {}
     for k, mutant in enumerate(found):
-        count = seen[mutant.key] = seen.get(mutant.key, 0) + 1
+        key = mutant.kind, mutant.key
+        count = seen[key] = seen.get(key, 0) + 1
         found[k] = replace(mutant, twin=count)
     return found
 
@@ -201,13 +202,22 @@ def _out_of_time(*_):
     raise TimeoutError
 
 
+def _start_worker(number) -> None:
+    """A process of its own for one mutant at a time: with its own folder, and an alarm clock."""
+    with number.get_lock():
+        number.value += 1
+        build.BUILD = FOLDER / f"worker{number.value}"
+    logging.disable(logging.CRITICAL)
+    signal.signal(signal.SIGALRM, _out_of_time)
+
+
 def passes(name: str, rtl: Path, file: str = "") -> str:
     """Why bench `name` rejects the design in `rtl`; empty if all its tests pass.
 
     file: the changed one; of the small modules, which share a bench, only its own tests run.
     """
     only = {"ram.v": "memory", "small_ram.v": "memory"}.get(file, Path(file).stem)
-    folder = FOLDER / "run"
+    folder = build.BUILD / "run"
     shutil.rmtree(folder, ignore_errors=True)
     shutil.rmtree(build.BUILD / "sim", ignore_errors=True)
     signal.alarm(MUTANT_SECONDS)
@@ -235,7 +245,7 @@ def passes(name: str, rtl: Path, file: str = "") -> str:
 
 def killed_by(mutant: Mutant | None) -> str:
     """The bench that kills `mutant` (None: the design as it is), and how; empty if none does."""
-    rtl = FOLDER / "rtl"
+    rtl = build.BUILD / "rtl"
     shutil.rmtree(rtl, ignore_errors=True)
     shutil.copytree(RTL, rtl)
     if mutant:
@@ -315,6 +325,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--files", nargs="+", metavar="MODULE", help="these files of rtl/ only")
     parser.add_argument("--kind", choices=KINDS, help="mutants of this kind only")
     parser.add_argument("--sample", type=int, metavar="N", help="N mutants at random")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="mutants at a time")
     parser.add_argument("--again", action="store_true", help="the survivors of the last run only")
     parser.add_argument("--list", action="store_true", help="show the mutants, run nothing")
     parser.add_argument("--no-check", action="store_true", help="do not try the design itself")
@@ -354,27 +365,25 @@ def main() -> int:
     _compile_quickly()
     os.environ["COCOTB_MAX_FAILURES"] = "1"
     os.environ["SIM_CMD_PREFIX"] = f"timeout -k 1 {SIMULATION_SECONDS}"
-    logging.disable(logging.CRITICAL)
-    signal.signal(signal.SIGALRM, _out_of_time)
-    if not arguments.no_check and (why := killed_by(None)):
-        print(f"mutate: the design itself is rejected: {why}", file=sys.stderr)
-        return 2
     survivors: list[Mutant] = []
     outcomes: list[str] = []
     begin = time.monotonic()
-    for k, mutant in enumerate(chosen):
-        why = killed_by(mutant)
-        outcomes.append(why)
-        if not why:
-            survivors.append(mutant)
-            print(f"SURVIVED {mutant.file}:{mutant.line}: {mutant.old} -> {mutant.new}: "
-                  f"{mutant.key.partition(': ')[2]}", flush=True)  # fmt: skip
-        left = (time.monotonic() - begin) / (k + 1) * (len(chosen) - k - 1)
-        print(f"{k + 1}/{len(chosen)} mutants, {len(survivors)} survived, {left / 60:.0f} min left;"
-              f" {mutant.file}:{mutant.line} {why or 'survived'}",
-              file=sys.stderr, flush=True)  # fmt: skip
-    with contextlib.suppress(FileNotFoundError):
-        shutil.rmtree(FOLDER / "run")
+    context = multiprocessing.get_context("fork")
+    with context.Pool(arguments.jobs, _start_worker, (context.Value("i", 0),)) as pool:
+        if not arguments.no_check and (why := pool.apply(killed_by, (None,))):
+            print(f"mutate: the design itself is rejected: {why}", file=sys.stderr)
+            return 2
+        for mutant, why in zip(chosen, pool.imap(killed_by, chosen), strict=True):
+            outcomes.append(why)
+            if not why:
+                survivors.append(mutant)
+                print(f"SURVIVED {mutant.file}:{mutant.line}: {mutant.old} -> {mutant.new}: "
+                      f"{mutant.key.partition(': ')[2]}", flush=True)  # fmt: skip
+            done = len(outcomes)
+            left = (time.monotonic() - begin) / done * (len(chosen) - done)
+            print(f"{done}/{len(chosen)} mutants, {len(survivors)} survived, "
+                  f"{left / 60:.0f} min left; {mutant.file}:{mutant.line} {why or 'survived'}",
+                  file=sys.stderr, flush=True)  # fmt: skip
     if not (arguments.sample or arguments.again):
         _record(chosen, outcomes, everything)
     SURVIVORS.write_text("".join(f"{m.key}\n" for m in survivors))
