@@ -70,7 +70,8 @@ def vanishing_exponent(config: Config) -> int:
 #: Fields of `Config` that `prune` decides on.
 FEATURES = (
     "specular", "power_function", "power_bypass", "log_octaves", "weight_function", "diffuse",
-    "environment", "channels", "two_sided",
+    "environment", "channels", "two_sided", "constant_half_vector", "constant_exponent",
+    "constant_weight", "constant_ambient", "constant_diffuse",
 )  # fmt: skip
 
 
@@ -89,6 +90,10 @@ def _some(count: int, of: int, what: str) -> str:
     return f"{what} in {count or 'none'} of {of} material{'s' if of != 1 else ''}"
 
 
+def _many(count: int, what: str) -> str:
+    return f"{count} different {what}" if count != 1 else f"one {what}"
+
+
 def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
     """The configuration with all that `frame` does not need left out, and why, a row a feature.
 
@@ -101,9 +106,12 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
 
     def decide(feature: str, needed: bool, why: str, saves: str, without=False):
         rows.append(Row(feature, bool(needed), why, saves))
-        if not needed and getattr(config, feature):
+        if not needed:
             chosen[feature] = without
         return needed
+
+    def fold(feature: str, constant: bool, codes, why: str, saves: str):
+        decide(feature, not constant, why, saves, without=tuple(int(c) for c in codes))
 
     one = config.exponent.one
     shiny = f.shiny
@@ -155,4 +163,31 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
         "two_sided", f.two_sided, f"the frame is {'two' if f.two_sided else 'one'}-sided",
         "turning of Zn",
     )  # fmt: skip
+    h = tuple(int(c) for c in frame.half_vector)
+    fold(
+        "constant_half_vector", specular and h[1] >= 0, h,
+        f"h = ({h[0]}, {h[1]}) in the whole frame" if specular else "no highlight",
+        "three multipliers become sums of shifted words",
+    )  # fmt: skip
+    fold(
+        "constant_exponent", power and len(np.unique(n)) == 1, n[:1],
+        _many(len(np.unique(n)), "exponent n") if power else "no power",
+        "table of n; its multiplier becomes a sum of shifted words",
+    )  # fmt: skip
+    w = np.unique(f.weight[:, 0])
+    fold(
+        "constant_weight", specular and not varies.any() and len(w) == 1, w,
+        "W depends on i" if varies.any() else _many(len(w), "weight W"),
+        "table of W; its multiplier becomes a sum of shifted words",
+    )  # fmt: skip
+    for feature, term, codes in (
+        ("constant_ambient", "environment", f.ambient),
+        ("constant_diffuse", "diffuse", f.diffuse),
+    ):
+        different = np.unique(codes, axis=0)
+        fold(
+            feature, codes.any() and len(different) == 1, different[0] if count else (),
+            _many(len(different), f"colour{'' if len(different) == 1 else 's'} of the {term} term"),
+            "tables; the multipliers become sums of shifted words" if term == "diffuse" else "tables",
+        )  # fmt: skip
     return dataclasses.replace(config, name=f"{config.name}-pruned", **chosen), rows
