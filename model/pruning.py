@@ -110,8 +110,10 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
             chosen[feature] = without
         return needed
 
-    def fold(feature: str, constant: bool, codes, why: str, saves: str):
-        decide(feature, not constant, why, saves, without=tuple(int(c) for c in codes))
+    def fold(feature: str, used: bool, codes, why: str, saves: str, unused: str):
+        """A value of the frame becomes one of the build if it is used and `codes` has one row."""
+        constant = tuple(int(c) for c in np.ravel(codes[0])) if used and len(codes) == 1 else ()
+        decide(feature, used and not constant, why if used else unused, saves, without=constant)
 
     one = config.exponent.one
     shiny = f.shiny
@@ -163,31 +165,30 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
         "two_sided", f.two_sided, f"the frame is {'two' if f.two_sided else 'one'}-sided",
         "turning of Zn",
     )  # fmt: skip
-    h = tuple(int(c) for c in frame.half_vector)
+    sums = "its multiplier becomes a sum of shifted words"
+    hx, hz = frame.half_vector
     fold(
-        "constant_half_vector", specular and h[1] >= 0, h,
-        f"h = ({h[0]}, {h[1]}) in the whole frame" if specular else "no highlight",
-        "three multipliers become sums of shifted words",
+        "constant_half_vector", specular, [(hx, hz)] if hz >= 0 else [],
+        f"h = ({hx}, {hz}) in the whole frame", f"its registers; {sums} (three)", "no highlight",
     )  # fmt: skip
+    values = np.unique(n)
     fold(
-        "constant_exponent", power and len(np.unique(n)) == 1, n[:1],
-        _many(len(np.unique(n)), "exponent n") if power else "no power",
-        "table of n; its multiplier becomes a sum of shifted words",
+        "constant_exponent", power, values, _many(len(values), "exponent n"),
+        f"table of n; {sums}", "no power",
     )  # fmt: skip
-    w = np.unique(f.weight[:, 0])
+    values = np.unique(f.weight[:, 0]) if not varies.any() else []
     fold(
-        "constant_weight", specular and not varies.any() and len(w) == 1, w,
-        "W depends on i" if varies.any() else _many(len(w), "weight W"),
-        "table of W; its multiplier becomes a sum of shifted words",
+        "constant_weight", specular, values,
+        "W depends on i" if varies.any() else _many(len(values), "weight W"),
+        f"table of W; {sums}", "no highlight",
     )  # fmt: skip
-    for feature, term, codes in (
-        ("constant_ambient", "environment", f.ambient),
-        ("constant_diffuse", "diffuse", f.diffuse),
+    for feature, codes, saves in (
+        ("constant_ambient", f.ambient, "table of Cp d in each channel"),
+        ("constant_diffuse", f.diffuse, f"table of Cp (1 - d) in each channel; {sums}"),
     ):
-        different = np.unique(codes, axis=0)
+        values = np.unique(codes, axis=0)
         fold(
-            feature, codes.any() and len(different) == 1, different[0] if count else (),
-            _many(len(different), f"colour{'' if len(different) == 1 else 's'} of the {term} term"),
-            "tables; the multipliers become sums of shifted words" if term == "diffuse" else "tables",
+            feature, codes.any(), values, _many(len(values), "colour of the term"), saves,
+            "the term is 0",
         )  # fmt: skip
     return dataclasses.replace(config, name=f"{config.name}-pruned", **chosen), rows
