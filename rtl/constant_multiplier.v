@@ -108,7 +108,7 @@ module constant_multiplier #(
 
   assign node[0] = {WIDE{1'b0}};
 
-  wire unused = &{1'b0, node[0], node[1][WIDE-1:OUT_BITS]};
+  wire unused = &{1'b0, word, node[0], node[1][WIDE-1:OUT_BITS]};
 
 endmodule
 
