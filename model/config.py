@@ -165,6 +165,14 @@ class Config:
     environment: bool = True  # Cp d: a material with d other than 0
     channels: int = 3  # 1: red, green and blue alike
     two_sided: bool = True  # |Zn| in place of Zn, where a frame asks for it
+    interpolate_x: bool = True  # a span along which the normal's x varies
+    interpolate_y: bool = True
+    interpolate_z: bool = True
+    constant_shift: tuple = constants("by")  # of the block normalization, the same for all normals
+    idle_step_bits: int = 0  # top bits of the steps that repeat the sign
+    idle_material_bits: int = 0  # top bits of material, x and y that are 0
+    idle_x_bits: int = 0
+    idle_y_bits: int = 0
     constant_half_vector: tuple = constants("x", "z")  # hz 0 or more
     constant_exponent: tuple = constants("n")  # of all materials
     constant_weight: tuple = constants("w")

@@ -15,6 +15,9 @@ import numpy as np
 
 from .config import DEFAULT, Config
 from .frame import Frame
+from .twin.normalizer import leading_zeros
+from .twin.phong_pipeline import BLOCK, interpolate
+from .twin.span_walker import span_walker
 
 
 @dataclass(frozen=True)
@@ -32,7 +35,8 @@ class Facts:
     """What the features depend on, of the materials that a frame's spans name.
 
     ambient, diffuse: int64[m, 3], weight: int64[m, P], exponent: int64[m]; `shiny`: the rows among
-    these with a specular term, whose exponents alone matter.
+    these with a specular term, whose exponents alone matter. shifts: the different shifts of the
+    block normalization. steps: int64[n, 3] of the spans of more than one pixel.
     """
 
     materials: np.ndarray
@@ -41,6 +45,8 @@ class Facts:
     weight: np.ndarray
     exponent: np.ndarray
     two_sided: bool
+    shifts: np.ndarray
+    steps: np.ndarray
 
     @property
     def shiny(self) -> np.ndarray:
@@ -48,14 +54,31 @@ class Facts:
         return self.weight.any(axis=1)
 
 
-def facts(frame: Frame) -> Facts:
+def facts(frame: Frame, config: Config) -> Facts:
     """The facts of `frame`."""
+    spans = frame.spans
     used = np.unique(frame.spans["material"]).astype(np.int64)
     table = frame.materials
     return Facts(
         used, table.ambient[used], table.diffuse[used], table.weight[used], table.exponent[used],
-        bool(frame.two_sided),
+        bool(frame.two_sided), _shifts(spans, config), spans["step"][spans["length"] > 1],
     )  # fmt: skip
+
+
+def _shifts(spans: np.ndarray, config: Config) -> np.ndarray:
+    """The different shifts of the block normalization over all pixels of `spans`."""
+    found = set()
+    total = int(np.maximum(spans["length"], 1).sum())
+    for first in range(0, total, BLOCK):
+        span, k, _, _, _ = span_walker(spans, first, first + BLOCK, config)
+        normal, _ = interpolate(spans, span, k, config)
+        found |= set(np.unique(leading_zeros(normal, config)).tolist())
+    return np.array(sorted(found), np.int64)
+
+
+def _idle(largest: int, bits: int) -> int:
+    """How many of `bits` are 0 at the top of `largest`, a word that is 0 or more."""
+    return bits - int(largest).bit_length()
 
 
 def vanishing_exponent(config: Config) -> int:
@@ -71,7 +94,9 @@ def vanishing_exponent(config: Config) -> int:
 FEATURES = (
     "specular", "power_function", "power_bypass", "log_octaves", "weight_function", "diffuse",
     "environment", "channels", "two_sided", "constant_half_vector", "constant_exponent",
-    "constant_weight", "constant_ambient", "constant_diffuse",
+    "constant_weight", "constant_ambient", "constant_diffuse", "constant_shift", "interpolate_x",
+    "interpolate_y", "interpolate_z", "idle_step_bits", "idle_material_bits", "idle_x_bits",
+    "idle_y_bits",
 )  # fmt: skip
 
 
@@ -99,7 +124,7 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
 
     Only takes away from `config`, never adds. The name is that of `config` with `pruned` to it.
     """
-    f = facts(frame)
+    f = facts(frame, config)
     count = len(f.materials)
     rows: list[Row] = []
     chosen: dict[str, object] = {}
@@ -190,5 +215,45 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
         fold(
             feature, codes.any(), values, _many(len(values), "colour of the term"), saves,
             "the term is 0",
+        )  # fmt: skip
+    lit_at_all = specular or f.diffuse.any()
+    shifts = f.shifts
+    fold(
+        "constant_shift", lit_at_all, shifts[:, None],
+        f"shifts from {shifts[0]} to {shifts[-1]}" if len(shifts) > 1
+        else f"{'every normal is' if len(shifts) else 'no normals to be'} shifted by "
+        f"{shifts[0] if len(shifts) else 0}",
+        "leading zeros of the components, their shifters", "nothing is lit",
+    )  # fmt: skip
+    for axis, name in enumerate("xyz"):
+        moving = int((f.steps[:, axis] != 0).sum())
+        decide(
+            f"interpolate_{name}", moving, f"the step is other than 0 in {moving} spans",
+            "adders of the interpolator",
+        )  # fmt: skip
+
+    def narrow(feature: str, idle: int, why: str, saves: str):
+        decide(feature, not idle, why, saves, without=idle)
+
+    spans = frame.spans
+    steepest = int(np.max(np.where(f.steps < 0, ~f.steps, f.steps), initial=0))
+    narrow(
+        "idle_step_bits", _idle(steepest, config.normal.bits - 1),
+        f"steps take {steepest.bit_length() + 1} of {config.normal.bits} bits",
+        "top bits of the steps",
+    )  # fmt: skip
+    for feature, largest, bits, what in (
+        ("idle_material_bits", max(f.materials, default=0), config.material_bits, "material"),
+        (
+            "idle_x_bits",
+            max(spans["x"] + spans["length"], default=1) - 1,
+            config.coordinate_bits,
+            "x",
+        ),
+        ("idle_y_bits", max(spans["y"], default=0), config.coordinate_bits, "y"),
+    ):
+        narrow(
+            feature, min(_idle(largest, bits), bits - 1), f"largest {what} is {largest}",
+            f"top bits of {what}",
         )  # fmt: skip
     return dataclasses.replace(config, name=f"{config.name}-pruned", **chosen), rows

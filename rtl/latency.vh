@@ -21,9 +21,8 @@
   + `PHONG_ROUND_SATURATE_LATENCY )
 
 `define PHONG_ALIGN_LATENCY \
-  ( 1                                /* significant bits of three components */ \
-  + `PHONG_LEADING_ZEROS_LATENCY \
-  + `PHONG_LEFT_SHIFTER_LATENCY \
+  ( (`PHONG_CONSTANT_SHIFT ? 0 : 1 + `PHONG_LEADING_ZEROS_LATENCY + `PHONG_LEFT_SHIFTER_LATENCY) \
+                                     /* significant bits of three components; shift */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
 `define PHONG_NORMALIZER_LATENCY \

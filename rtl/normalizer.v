@@ -19,6 +19,8 @@ module normalizer #(
     parameter UNIT_FRACTION     = `PHONG_UNIT_FRACTION,
     parameter COSINE_BITS       = `PHONG_COSINE_BITS,
     parameter COSINE_FRACTION   = `PHONG_COSINE_FRACTION,
+    parameter CONSTANT_SHIFT    = `PHONG_CONSTANT_SHIFT,  // 1: all normals are shifted by SHIFT
+    parameter SHIFT             = `PHONG_CONSTANT_SHIFT_BY,
     parameter SPECULAR          = `PHONG_SPECULAR,   // 0: nobody asks for the unit normal itself
     parameter TWO_SIDED         = `PHONG_TWO_SIDED,  // 0: where Zn < 0, cosine is of no use
     parameter LATENCY           = `PHONG_NORMALIZER_LATENCY
@@ -57,25 +59,32 @@ module normalizer #(
   );
 
   // ---- leading_zeros: of the largest component ----
-  localparam SHIFT_LATENCY = 1 + `PHONG_LEADING_ZEROS_LATENCY;
+  localparam SHIFT_LATENCY = CONSTANT_SHIFT ? 0 : 1 + `PHONG_LEADING_ZEROS_LATENCY;
 
-  reg [NORMAL_BITS-2:0] ones_p1;
   wire [SHIFT_BITS-1:0] shift_p3;
 
-  always @(posedge clk) begin
-    ones_p1 <= (x[NORMAL_BITS-2:0] ^ {NORMAL_BITS - 1{x[NORMAL_BITS-1]}})
-             | (y[NORMAL_BITS-2:0] ^ {NORMAL_BITS - 1{y[NORMAL_BITS-1]}})
-             | (z[NORMAL_BITS-2:0] ^ {NORMAL_BITS - 1{z[NORMAL_BITS-1]}});
-  end
+  generate
+    if (CONSTANT_SHIFT) begin : gen_constant_shift
+      assign shift_p3 = SHIFT;
+    end else begin : gen_shift
+      reg [NORMAL_BITS-2:0] ones_p1;
 
-  leading_zeros #(
-      .BITS(NORMAL_BITS - 1),
-      .COUNT_BITS(SHIFT_BITS)
-  ) u_leading_zeros (
-      .clk  (clk),
-      .word (ones_p1),
-      .count(shift_p3)
-  );
+      always @(posedge clk) begin
+        ones_p1 <= (x[NORMAL_BITS-2:0] ^ {NORMAL_BITS - 1{x[NORMAL_BITS-1]}})
+                 | (y[NORMAL_BITS-2:0] ^ {NORMAL_BITS - 1{y[NORMAL_BITS-1]}})
+                 | (z[NORMAL_BITS-2:0] ^ {NORMAL_BITS - 1{z[NORMAL_BITS-1]}});
+      end
+
+      leading_zeros #(
+          .BITS(NORMAL_BITS - 1),
+          .COUNT_BITS(SHIFT_BITS)
+      ) u_leading_zeros (
+          .clk  (clk),
+          .word (ones_p1),
+          .count(shift_p3)
+      );
+    end
+  endgenerate
 
   // ---- align, sum_of_squares, scale, round: the same for the three components ----
   localparam X = 0, Y = 1, Z = 2;
@@ -107,15 +116,19 @@ module normalizer #(
           .out(normal_p3)
       );
 
-      left_shifter #(
-          .BITS(NORMAL_BITS),
-          .COUNT_BITS(SHIFT_BITS)
-      ) u_align (
-          .clk(clk),
-          .word(normal_p3),
-          .count(shift_p3),
-          .shifted(aligned_p5)
-      );
+      if (CONSTANT_SHIFT) begin : gen_constant_align
+        assign aligned_p5 = normal_p3 << SHIFT;
+      end else begin : gen_align
+        left_shifter #(
+            .BITS(NORMAL_BITS),
+            .COUNT_BITS(SHIFT_BITS)
+        ) u_align (
+            .clk(clk),
+            .word(normal_p3),
+            .count(shift_p3),
+            .shifted(aligned_p5)
+        );
+      end
 
       round_saturate #(
           .IN_BITS (NORMAL_BITS),

@@ -257,7 +257,7 @@ def test_random_scene(seed):
 
 def test_what_does_not_fit_is_flagged():
     """Frames that need each feature in turn, on a build that has none of them."""
-    bare = plain(dull, 40)
+    bare = plain(SEED, 40)
     for change in (dull, no_environment, grey, one_sided, one_diffuse):
         change(bare, np.random.default_rng(SEED))
     config, _ = pruning.prune(bare)
