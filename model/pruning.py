@@ -76,6 +76,31 @@ def _shifts(spans: np.ndarray, config: Config) -> np.ndarray:
     return np.array(sorted(found), np.int64)
 
 
+def unsupported_spans(frame: Frame, built: Config) -> np.ndarray:
+    """Which spans the RTL of `built` flags, bool[n] (of legal spans; see rtl/span_guard.v)."""
+    spans = frame.spans
+    longer = (spans["length"] > 1)[:, None]
+    fixed = [not getattr(built, f"interpolate_{axis}") for axis in "xyz"]
+    limit = 1 << (built.normal.bits - 1 - built.idle_step_bits)
+    step = spans["step"]
+    bad = (longer & (fixed & (step != 0) | (step < -limit) | (step >= limit))).any(axis=1)
+    right = spans["x"] + np.maximum(spans["length"], 1) - 1
+    for largest, bits, idle in (
+        (spans["material"], built.material_bits, built.idle_material_bits),
+        (right, built.coordinate_bits, built.idle_x_bits),
+        (spans["y"], built.coordinate_bits, built.idle_y_bits),
+    ):
+        bad |= largest >= 1 << (bits - idle)
+    if built.constant_shift:
+        full = dataclasses.replace(built, constant_shift=())
+        total = int(np.maximum(spans["length"], 1).sum())
+        for first in range(0, total, BLOCK):
+            span, k, _, _, _ = span_walker(spans, first, first + BLOCK, full)
+            normal, _ = interpolate(spans, span, k, full)
+            bad[span[leading_zeros(normal, full) != built.constant_shift[0]]] = True
+    return bad
+
+
 def _idle(largest: int, bits: int) -> int:
     """How many of `bits` are 0 at the top of `largest`, a word that is 0 or more."""
     return bits - int(largest).bit_length()

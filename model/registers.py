@@ -41,7 +41,7 @@ def writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
             out.append((kind | base | (FIELDS[name] + channel), int(word) & word_mask))
 
     hx, hz = frame.half_vector
-    differs = (hx, hz) != tuple(config.constant_half_vector)
+    differs = config.specular and (hx, hz) != tuple(config.constant_half_vector)
     write("half_x", hx, differs)
     write("half_z", hz, differs)
     write("control", frame.two_sided, config.two_sided or frame.two_sided)
@@ -61,7 +61,7 @@ def writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
         known = config.constant_exponent or (
             () if config.power_function else (config.exponent.one,)
         )
-        write("exponent", n, (n,) != tuple(known), base)
+        write("exponent", n, config.specular and (n,) != tuple(known), base)
         points = table.weight[material].tolist()
         known = config.constant_weight or (() if config.specular else (0,))
         for k in range(config.weight_points - 1):

@@ -114,13 +114,14 @@ module register_map #(
   wire [COEFFICIENT_BITS-1:0] code = table_word[COEFFICIENT_BITS-1:0];
   wire [COEFFICIENT_BITS:0] step = table_word[2*COEFFICIENT_BITS:COEFFICIENT_BITS];
   wire [EXPONENT_BITS-1:0] n = table_word[EXPONENT_BITS-1:0];
+  wire write_n = write_exponent & (SPECULAR != 0);  // else no exponent is of use
   wire [9:0] missing;
 
   assign missing[0] = (SPECULAR == 0) & write_weight & (table_word != 0);
   assign missing[1] = (WEIGHT_FUNCTION == 0) & write_weight & (step != 0);
-  assign missing[2] = (POWER_FUNCTION == 0) & (SPECULAR != 0) & write_exponent & (n != ONE);
-  assign missing[3] = (POWER_FUNCTION != 0) & (POWER_BYPASS == 0) & write_exponent & (n == ONE);
-  assign missing[4] = (LOG_OCTAVES == 0) & write_exponent & (n != ONE) & (n < VANISHES);
+  assign missing[2] = (POWER_FUNCTION == 0) & write_n & (n != ONE);
+  assign missing[3] = (POWER_FUNCTION != 0) & (POWER_BYPASS == 0) & write_n & (n == ONE);
+  assign missing[4] = (LOG_OCTAVES == 0) & write_n & (n != ONE) & (n < VANISHES);
   assign missing[5] = (DIFFUSE == 0) & |write_diffuse & (code != 0)
       | (ENVIRONMENT == 0) & |write_ambient & (code != 0);
   assign missing[6] = (CHANNELS < 3) & |{write_ambient[2:1], write_diffuse[2:1]};
@@ -128,7 +129,7 @@ module register_map #(
   assign missing[8] = (CONSTANT_HALF_VECTOR != 0)
       & (write_half_x & (table_word[HALF_BITS-1:0] != half_x)
          | write_half_z & (table_word[HALF_BITS-1:0] != half_z));
-  assign missing[9] = (CONSTANT_EXPONENT != 0) & write_exponent & (n != `PHONG_CONSTANT_EXPONENT_N)
+  assign missing[9] = (CONSTANT_EXPONENT != 0) & write_n & (n != `PHONG_CONSTANT_EXPONENT_N)
       | (CONSTANT_WEIGHT != 0) & write_weight & (code != `PHONG_CONSTANT_WEIGHT_W)
       | (CONSTANT_AMBIENT != 0)
         & (write_ambient[0] & (code != `PHONG_CONSTANT_AMBIENT_RED)

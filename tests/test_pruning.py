@@ -15,6 +15,8 @@ from model.frame import Frame, MaterialTable
 from model.registers import writes
 from model.scene import bundled_scenes, load_scene
 from model.scene_to_spans import front_end
+from model.spans import illegal_spans
+from model.twin.specular_power import specular_power
 from sim.build import Bench
 from sim.latency import latencies
 from sim.run_frame import Job, simulate_jobs
@@ -30,9 +32,17 @@ def plain(seed=SEED, spans: int = 300, longest: int = 12, **changes) -> Frame:
     rng = np.random.default_rng(seed)
     frame = random_frame(seed, spans, longest, two_sided=True)
     frame.materials.exponent[:4] = np.array([1, 1.5, 10, 128]) * C.exponent.one
+    steepest(frame, rng)
     for change in changes.values():
         change(frame, rng)
     return frame
+
+
+def steepest(frame, rng):
+    """A span with the steepest slopes there are, between normals of the size of unit ones."""
+    one = C.normal.one
+    s = frame.spans[:1]
+    s["length"], s["start"], s["step"] = 2, -one + 1, 2 * one - 2
 
 
 def dull(frame, rng):
@@ -96,6 +106,46 @@ def opposite(frame, rng):  # the half-way vector is always the frame's own; here
     frame.half_vector = (-abs(frame.half_vector[0]), frame.half_vector[1])
 
 
+def size_of_unit(frame, rng):
+    """Normals whose largest component is 1/2 to 1 everywhere, except at the steepest span's ends,
+    which are as large."""
+    s = frame.spans[1:]
+    largest = rng.integers(0, 3, len(s))
+    row = np.arange(len(s))
+    start = rng.integers(-C.normal.one // 2, C.normal.one // 2, (len(s), 3))
+    start[row, largest] = np.where(rng.random(len(s)) < 0.5, 3, -3) * (C.normal.one // 4)
+    s["start"], s["step"] = start, rng.integers(-(1 << 24), 1 << 24, (len(s), 3))
+
+
+def gentle(frame, rng):
+    s = frame.spans
+    s["step"] >>= 5
+
+
+def still_x(frame, rng):
+    frame.spans["step"][:, 0] = 0
+
+
+def still_y(frame, rng):
+    frame.spans["step"][:, 1] = 0
+
+
+def still_z(frame, rng):
+    frame.spans["step"][:, 2] = 0
+
+
+def few_materials(frame, rng):
+    frame.spans["material"] &= 7
+
+
+def narrow_picture(frame, rng):
+    frame.spans["x"] %= 240
+
+
+def low_picture(frame, rng):
+    frame.spans["y"] &= 511
+
+
 #: feature: (what makes it go, what goes with it beside the half-way vector, which always does).
 ALONE = {
     "specular": (
@@ -122,6 +172,14 @@ ALONE = {
     "constant_weight": (one_weight, {"weight_function"}),
     "constant_ambient": (one_ambient, set()),
     "constant_diffuse": (one_diffuse, set()),
+    "constant_shift": (size_of_unit, set()),
+    "interpolate_x": (still_x, set()),
+    "interpolate_y": (still_y, set()),
+    "interpolate_z": (still_z, set()),
+    "idle_step_bits": (gentle, set()),
+    "idle_material_bits": (few_materials, set()),
+    "idle_x_bits": (narrow_picture, set()),
+    "idle_y_bits": (low_picture, set()),
 }
 
 
@@ -166,7 +224,7 @@ def test_a_feature_goes_when_its_reason_goes(feature):
 
 def test_every_feature_is_in_the_analysis_and_in_the_tests():
     assert set(ALONE) == set(pruning.FEATURES)
-    assert all(f.name not in pruning.FEATURES or f.default in (True, 3, ())
+    assert all(f.name not in pruning.FEATURES or f.default in (True, 3, (), 0)
                for f in dataclasses.fields(C))  # fmt: skip
 
 
@@ -199,8 +257,6 @@ def test_powers_of_large_exponents_vanish_below_one_half():
     below it."""
     v = np.arange(C.versine.one // 2, C.versine.max + 1)
     least = pruning.vanishing_exponent(C)
-    from model.twin.specular_power import specular_power
-
     assert not specular_power(v, np.full(len(v), least), C).any()
     assert specular_power(v[:1], np.array([least - C.exponent.one]), C).any()
 
@@ -291,6 +347,42 @@ def test_what_does_not_fit_is_flagged():
     for (feature, frame), result in zip(wanted.items(), results[1:], strict=False):
         assert result.unsupported > 0, feature
         assert any(line.startswith(feature) for line in pruning.missing(frame, config)), feature
+
+
+def test_spans_that_do_not_fit_are_flagged_once_each():
+    """Random spans of all kinds on builds that are narrowed in every way: as many as the model
+    says, with and without stalls."""
+    fit = plain()
+    for change in (size_of_unit, still_y, gentle, few_materials, narrow_picture, low_picture):
+        change(fit, np.random.default_rng(SEED))
+    fit.spans["start"][0, 0] = C.normal.one * 3 // 4  # the span that was steep, without a step in y
+    names = ("constant_shift", "interpolate_y", "idle_step_bits", "idle_material_bits",
+             "idle_x_bits", "idle_y_bits")  # fmt: skip
+    narrow = pruning.prune(fit)[0]
+    config = dataclasses.replace(C, name="narrow", **{n: getattr(narrow, n) for n in names})
+    assert all(getattr(config, n) != getattr(C, n) for n in names)
+    assert not pruning.unsupported_spans(fit, config).any()
+    frames = [fit]
+    for change in ("start", "step", "material", "x", "y"):  # one in three of each is any
+        rng = np.random.default_rng(SEED)
+        frame, other = dataclasses.replace(fit, spans=fit.spans.copy()), plain(SEED + 1)
+        rows = np.flatnonzero(rng.random(len(fit.spans)) < 1 / 3)
+        frame.spans[change][rows] = other.spans[change][rows]
+        frames.append(frame)
+    for frame in frames:
+        frame.spans = frame.spans[~illegal_spans(frame, C)]
+        frame.spans["last"][-1] = True
+    wanted = [int(pruning.unsupported_spans(frame, config).sum()) for frame in frames]
+    assert wanted[0] == 0 and min(wanted[1:]) > 20 and max(wanted) < len(fit.spans)
+    bench = Bench("frame_bench", config, quick=True)
+    jobs = [Job(f, stall=s, idle=s) for s in (0, 100) for f in frames]
+    results = simulate_jobs(jobs, config, bench)
+    assert [r.unsupported for r in results] == 2 * wanted
+    for job, result in zip(jobs, results, strict=True):
+        fits = ~pruning.unsupported_spans(job.frame, config)
+        pixel = np.repeat(fits, job.frame.spans["length"])
+        want = twin.render(job.frame)
+        assert np.array_equal(result.pixels.rgb[pixel], want.rgb[pixel])
 
 
 def test_a_pruned_build_needs_fewer_writes():
