@@ -26,7 +26,12 @@ def word_bits(config: Config) -> int:
 
 
 def writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
-    """(address, word) of every write that `frame` needs: registers and the materials in use."""
+    """(address, word) of every write that `frame` needs: registers and the materials in use.
+
+    None where intensities come with the spans.
+    """
+    if config.technique != "phong":
+        return []
     kind = 1 << (config.material_bits + config.weight_index_bits)
     word_mask = (1 << word_bits(config)) - 1
     table = frame.materials

@@ -45,6 +45,7 @@ def make_report(
     return {
         "schema": SCHEMA,
         "scene": scene,
+        "technique": config.technique,
         "size": [frame.width, frame.height],
         "pixels": pixels,
         "spans": len(frame.spans),
@@ -97,7 +98,7 @@ def table(report: dict) -> Table:
     budget, error, wall = report["budget"], report["error"], report["wall_s"]
     width, height = report["size"]
     rows = Table(
-        title=f"{escape(report['scene'])}, {width} x {height}",
+        title=f"{escape(report['scene'])}, {report['technique']}, {width} x {height}",
         show_header=False,
         title_style="bold",
     )

@@ -81,7 +81,14 @@
   + `PHONG_SPECULAR_POWER_LATENCY \
   + `PHONG_COLOUR_CHANNEL_LATENCY )  /* W * power runs beside its products */
 
+`define PHONG_INTENSITY_CODE_LATENCY \
+  ( 1                                /* clamp, cut */ \
+  + 2 )                              /* code: times 255, round */
+
 // From a pixel that leaves the interpolators to its colour.
-`define PHONG_PIXEL_LATENCY (`PHONG_NORMALIZER_LATENCY + `PHONG_SHADING_UNIT_LATENCY)
+`define PHONG_PIXEL_LATENCY \
+  ( `PHONG_TECHNIQUE == `PHONG_TECHNIQUE_PHONG \
+  ? `PHONG_NORMALIZER_LATENCY + `PHONG_SHADING_UNIT_LATENCY \
+  : `PHONG_INTENSITY_CODE_LATENCY )  /* Gouraud, flat */
 
 `endif

@@ -68,6 +68,13 @@ _X = _sum(_LOG, MUL, 3)
 _LINE = _sum(_X, ROM, L.format("NARROW_MULTIPLIER"), 1)
 
 MODULES = {
+    "intensity_code": Module(
+        ("value",),
+        (
+            Stage("intensity_code.clamp", ("intensity_p1",), "1"),
+            Stage("intensity_code.code", ("colour",), L.format("INTENSITY_CODE")),
+        ),
+    ),
     "inverse_sqrt": Module(
         ("operand",),
         (

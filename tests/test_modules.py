@@ -21,7 +21,7 @@ from tests.modules.frames import random_frame
 SEED = 75
 DATAPATH = (
     "inverse_sqrt", "normalizer", "reflection", "specular_power", "specular_weight",
-    "shading_unit",
+    "shading_unit", "intensity_code",
 )  # fmt: skip
 
 
