@@ -85,7 +85,7 @@ def test_a_good_run(start, scene, tmp_path):
 
     report = json.loads((tmp_path / "out/report.json").read_text())
     assert list(report) == [
-        "schema", "scene", "size", "pixels", "spans", "illegal_spans", "cycles",
+        "schema", "scene", "technique", "size", "pixels", "spans", "illegal_spans", "cycles",
         "cycles_per_pixel", "latency_cycles", "stall_cycles", "utilization", "budget", "compare",
         "error", "input_error", "degenerate_triangles", "config", "versions", "wall_s",
     ]  # fmt: skip
@@ -167,6 +167,9 @@ def test_size_fps_and_clock(start, scene, tmp_path):
         (["--scene=some where/my mesh.v2.obj"], "build/my mesh.v2"),
         (["--spans=a/frame.spans"], "build/frame"),
         (["--spans=a/spans", "--out=-x"], "-x"),
+        (["--scene=cone", "--technique=gouraud"], "build/cone-gouraud"),
+        (["--technique=flat", "--out=here"], "here"),
+        (["--technique="], "build/teapot"),
     ],
 )
 def test_where_the_results_go(arguments, out):
@@ -251,6 +254,7 @@ def assert_refused(found, says):
         ("--clock-mhz=-200", "CLOCK_MHZ is `-200`"),
         ("--clock-mhz=inf", "CLOCK_MHZ is `inf`"),
         ("--clock-mhz=1e308", "CLOCK_MHZ is `1e308`"),
+        ("--technique=Phong", "TECHNIQUE is `Phong`, not one of phong, gouraud, flat"),
         ("--scene=teapto", "teapot"),
         ("--scene=nowhere/scene.toml", "nowhere/scene.toml: no such file"),
         ("--scene=nowhere.obj", "nowhere.obj: no such file"),

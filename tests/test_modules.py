@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from model.config import DEFAULT as C
+from model.config import TECHNIQUES
 from model.spans import illegal_spans
 from model.twin import render
 from sim import primitives
@@ -34,13 +35,14 @@ def outcome(results, folder) -> list[str]:
     return [case.get("name") for case in failed] + (said if failed else [])
 
 
-def run(bench: Bench, module: str, tests: str, folder) -> None:
+def run(bench: Bench, module: str, tests: str, folder, technique: str = "phong") -> None:
     """Run the cocotb tests `tests` of `module` in `bench`."""
     with contextlib.suppress(SystemExit):  # how the runner says inside pytest that a test failed
         bench.run(
             tests, folder, seed=SEED,
             extra_env={
-                "PHONG_MODULE": module, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)
+                "PHONG_MODULE": module, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED),
+                "PHONG_TECHNIQUE": technique,
             },
         )  # fmt: skip
     failures = outcome(folder / "results.xml", folder)
@@ -63,20 +65,26 @@ def test_control(tmp_path):
     run(Bench("control_bench"), "control", "tests.modules.control", tmp_path)
 
 
-def test_phong_pipeline(tmp_path):
-    run(Bench("pipeline_bench"), "phong_pipeline", "tests.modules.phong_pipeline", tmp_path)
+@pytest.mark.parametrize("technique", TECHNIQUES)
+def test_phong_pipeline(technique, tmp_path):
+    bench = Bench("pipeline_bench", TECHNIQUES[technique])
+    run(bench, "phong_pipeline", "tests.modules.phong_pipeline", tmp_path, technique)
 
 
-def same_pixels(got, frame) -> bool:
-    want = render(frame, C)
+def same_pixels(got, frame, config) -> bool:
+    want = render(frame, config)
     pairs = ((got.x, want.x), (got.y, want.y), (got.rgb, want.rgb), (got.last, want.last))
     return all(np.array_equal(a, b) for a, b in pairs)
 
 
-def test_whole_frames_in_all_regimes():
-    frame, dot = random_frame(SEED, 1000, 40), random_frame(SEED, 1, 1)
-    frame.spans["step"][::50, 1] = C.normal.max  # most of these leave the format
-    illegal = int(illegal_spans(frame, C).sum())
+@pytest.mark.parametrize("technique", TECHNIQUES)
+def test_whole_frames_in_all_regimes(technique):
+    config = TECHNIQUES[technique]
+    frame = random_frame(SEED, 1000, 40, config=config)
+    dot = random_frame(SEED, 1, 1, config=config)
+    if technique != "flat":
+        frame.spans["step"][::50, 1] = C.normal.max  # most of these leave the format
+    illegal = int(illegal_spans(frame, config).sum())
     pixels = int(frame.spans["length"].sum())
     chances = (0, 64, 200)
     jobs = [Job(dot)]
@@ -84,7 +92,7 @@ def test_whole_frames_in_all_regimes():
     # Broken off in the middle, with and without pixels waiting, then whole after a reset.
     for clocks, stall in ((700, 0), (3001, 200), (90, 255)):
         jobs += [Job(frame, stop_after=clocks, stall=stall), Job(frame, reset_first=True)]
-    results = simulate_jobs(jobs)
+    results = simulate_jobs(jobs, config)
     overhead = results[0].cycles - 1
     for job, result in zip(jobs, results, strict=True):
         what = f"idle {job.idle}, stall {job.stall}, {len(job.frame.spans)} spans, seed {SEED}"
@@ -92,7 +100,7 @@ def test_whole_frames_in_all_regimes():
             assert not result.complete, what
             continue
         assert result.complete and result.extra_pixels == 0, what
-        if not same_pixels(result.pixels, job.frame):
+        if not same_pixels(result.pixels, job.frame, config):
             pytest.fail(f"module phong_pipeline, whole frame: pixels differ; {what}")
         assert result.latency_cycles == results[0].latency_cycles, what
         assert result.illegal_spans == (illegal if job.frame is frame else 0), what
