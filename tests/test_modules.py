@@ -13,17 +13,12 @@ from model.config import DEFAULT as C
 from model.config import TECHNIQUES
 from model.spans import illegal_spans
 from model.twin import render
-from sim import primitives
+from sim.benches import NAMES, module_bench
 from sim.build import Bench
 from sim.run_frame import Job, simulate_jobs
-from sim.units import bench_source
 from tests.modules.frames import random_frame
 
 SEED = 75
-DATAPATH = (
-    "inverse_sqrt", "normalizer", "reflection", "specular_power", "specular_weight",
-    "shading_unit", "intensity_code",
-)  # fmt: skip
 
 
 def outcome(results, folder) -> list[str]:
@@ -35,14 +30,13 @@ def outcome(results, folder) -> list[str]:
     return [case.get("name") for case in failed] + (said if failed else [])
 
 
-def run(bench: Bench, module: str, tests: str, folder, technique: str = "phong") -> None:
+def run(bench: Bench, module: str, tests: str, folder) -> None:
     """Run the cocotb tests `tests` of `module` in `bench`."""
     with contextlib.suppress(SystemExit):  # how the runner says inside pytest that a test failed
         bench.run(
             tests, folder, seed=SEED,
             extra_env={
-                "PHONG_MODULE": module, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED),
-                "PHONG_TECHNIQUE": technique,
+                "PHONG_MODULE": module, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)
             },
         )  # fmt: skip
     failures = outcome(folder / "results.xml", folder)
@@ -50,25 +44,10 @@ def run(bench: Bench, module: str, tests: str, folder, technique: str = "phong")
         pytest.fail("\n".join(failures), pytrace=False)
 
 
-@pytest.mark.parametrize("module", DATAPATH)
-def test_datapath(module, tmp_path):
-    top, text = bench_source(module)
-    run(Bench(top, sources={f"{top}.v": text}), module, "tests.modules.datapath", tmp_path)
-
-
-def test_primitives(tmp_path):
-    bench = Bench(primitives.TOP, sources={f"{primitives.TOP}.v": primitives.source()})
-    run(bench, "primitives", "tests.modules.primitives", tmp_path)
-
-
-def test_control(tmp_path):
-    run(Bench("control_bench"), "control", "tests.modules.control", tmp_path)
-
-
-@pytest.mark.parametrize("technique", TECHNIQUES)
-def test_phong_pipeline(technique, tmp_path):
-    bench = Bench("pipeline_bench", TECHNIQUES[technique])
-    run(bench, "phong_pipeline", "tests.modules.phong_pipeline", tmp_path, technique)
+@pytest.mark.parametrize("name", NAMES)
+def test_module(name, tmp_path):
+    about = module_bench(name)
+    run(Bench(about.top, about.config, about.sources), name, about.tests, tmp_path)
 
 
 def same_pixels(got, frame, config) -> bool:

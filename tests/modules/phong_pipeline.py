@@ -10,7 +10,7 @@ import os
 import cocotb
 import numpy as np
 
-from model.config import TECHNIQUES
+from model.config import DEFAULT, TECHNIQUES
 from model.frame import SPAN_DTYPE
 from model.registers import writes
 from model.spans import illegal_spans, pack, record_bits, span_fields
@@ -18,7 +18,7 @@ from model.twin import render
 from sim.stream_tb import REGIMES, PipelineTB, pauses
 from tests.modules.frames import random_frame
 
-C = TECHNIQUES[os.environ["PHONG_TECHNIQUE"]]
+C = TECHNIQUES.get(os.environ["PHONG_MODULE"], DEFAULT)
 SEED = int(os.environ.get("PHONG_SEED", "75"))
 SPAN_BITS = span_fields(C)[-1].lsb
 LOW, HIGH = C.normal.min, C.normal.max
