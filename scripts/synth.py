@@ -11,7 +11,7 @@ import sys
 from rich.console import Console
 from rich.table import Table
 
-from model.config import TECHNIQUES, Config
+from model.config import DEFAULT, TECHNIQUES, Config
 from model.frame import InputError
 from scripts import records, synthesis
 from scripts.records import Row
