@@ -100,10 +100,9 @@ class Config:
         if self.channels not in (1, 3):
             raise ValueError(f"channels is {self.channels}, not 1 or 3")
 
-    # -- features ----------------------------------------------------------------------------------
+    # -- technique ---------------------------------------------------------------------------------
     technique: str = choice("phong", "gouraud", "flat")  # what is interpolated: normals, or
     #   intensities from the vertices, or nothing: one intensity a face
-    channels: int = 3  # red, green, blue; 1: grey
 
     # -- spans and pixels --------------------------------------------------------------------------
     coordinate_bits: int = 12  # x and y: pictures of up to 4096 x 4096
@@ -140,6 +139,17 @@ class Config:
     power: Format = _unsigned(0, 18)  # cos(s)**n
     weight: Format = _unsigned(1, 17)  # W(i)
     intensity: Format = _unsigned(1, 24)  # S of one channel, before the scale to the code
+
+    # -- features: what a scene does not need is left out (see model/pruning.py) -------------------
+    specular: bool = True  # W(i) cos(s)^n: a material with W other than 0
+    power_function: bool = True  # cos(s)^n by tables: a material with n other than 1
+    power_bypass: bool = True  # cos(s) itself: a material with n = 1 beside others
+    log_octaves: bool = True  # cos(s) <= 1/2: an n so small that cos(s)^n is not 0 there
+    weight_function: bool = True  # W(i) by a table: a material whose W depends on i
+    diffuse: bool = True  # Cp (1 - d) cos(i): a material with d other than 1
+    environment: bool = True  # Cp d: a material with d other than 0
+    channels: int = 3  # 1: red, green and blue alike
+    two_sided: bool = True  # |Zn| in place of Zn, where a frame asks for it
 
     # -- derived -----------------------------------------------------------------------------------
     @property

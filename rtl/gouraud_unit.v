@@ -49,14 +49,9 @@ module gouraud_unit #(
           .colour(colour[c*COLOUR_BITS+:COLOUR_BITS])
       );
     end
-
-    if (CHANNELS == 1) begin : gen_grey
-      assign {blue, green, red} = {3{colour}};
-    end else begin : gen_colour
-      assign {blue, green, red} = colour;
-    end
   endgenerate
 
+  assign {blue, green, red} = {3 / CHANNELS{colour}};
   assign overflow = |left;
 
 endmodule

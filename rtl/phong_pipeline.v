@@ -43,7 +43,8 @@ module phong_pipeline #(
     output wire [PIXEL_BITS-1:0] m_axis_tdata,
     output wire                  m_axis_tlast,   // last pixel of the frame
 
-    output wire illegal_span  // for one clock: a span left its word, the counter, or was empty
+    output wire illegal_span,  // for one clock: a span left its word, the counter, or was empty
+    output wire unsupported  // for one clock: a word or a span needs what this build leaves out
 );
 
   // ---- spans to pixels ----
@@ -109,7 +110,8 @@ module phong_pipeline #(
           .write_ambient(write_ambient),
           .write_diffuse(write_diffuse),
           .table_address(table_address),
-          .table_word(table_word)
+          .table_word(table_word),
+          .unsupported(unsupported)
       );
 
       // ---- three interpolators in parallel ----
@@ -201,6 +203,8 @@ module phong_pipeline #(
           .blue(blue)
       );
     end else if (TECHNIQUE == `PHONG_TECHNIQUE_GOURAUD) begin : gen_gouraud
+      assign unsupported = write_enable;  // there is nothing to write
+
       gouraud_unit u_gouraud_unit (
           .clk(clk),
           .load(load),
@@ -213,6 +217,7 @@ module phong_pipeline #(
       );
     end else begin : gen_flat
       assign overflow = 1'b0;  // nothing is added
+      assign unsupported = write_enable;
 
       flat_unit u_flat_unit (
           .clk(clk),
@@ -227,7 +232,7 @@ module phong_pipeline #(
   endgenerate
 
   // The older techniques have no registers and no materials.
-  wire unused = &{1'b0, write_enable, write_address, write_word, pixel_material};
+  wire unused = &{1'b0, write_address, write_word, pixel_material};
 
   // ---- pixels out ----
   pixel_fifo u_pixel_fifo (
