@@ -163,8 +163,6 @@ def test_normalized_edges_are_refused():
     ("module", "old", "new", "says"),
     [
         ("intensity_code", "1'b1 << INTENSITY_FRACTION", "0", "stage intensity_code.clamp"),
-        ("intensity_code", "scaled_p2[INTENSITY_FRACTION-1]}", "1'b0}",
-         "stage intensity_code.code"),
         ("gouraud_unit", ".step(values[(CHANNELS+c)", ".step(values[(2*CHANNELS-1-c)",
          "intensity_code agree with the twin on what is interpolated here"),
     ],
