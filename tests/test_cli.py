@@ -99,7 +99,7 @@ def test_a_good_run(start, scene, tmp_path):
         "met": True, "max_fps": 200e6 / cycles,
     }  # fmt: skip
     assert report["compare"] == {"pixels": pixels, "mismatches": 0}
-    keys = {"max_lsb", "rms_lsb", "p999_lsb", "correctly_rounded", "psnr_db"}
+    keys = {"max_lsb", "mean_lsb", "rms_lsb", "p999_lsb", "correctly_rounded", "psnr_db"}
     assert set(report["error"]) == keys | {"bound_lsb"} and set(report["input_error"]) == keys
     assert report["config"]["normal"] == str(DEFAULT.normal)
     assert list(report["wall_s"]) == ["front_end", "model", "reference", "build", "simulate"]
