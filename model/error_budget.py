@@ -95,7 +95,7 @@ def start(config: Config) -> float:
 def newton(error: float, config: Config) -> float:
     """Relative error after `newton_step` from an estimate of relative error `error`.
 
-    y (1 + e/2), e = 1 - x y**2 = -2 d - d**2 with d the estimate's error, leaves -3/2 d**2 - d**3/2.
+    y (1 + e/2), e = 1 - x y**2 = -2 d - d**2 with d the estimate's error, leaves 3/2 d**2 + d**3/2.
     Half of what is wrong with e: x cut, y**2 rounded (y is 0.48 or more), e itself cut and one
     unit too small. Then the final rounding, or the clamp at 1.
     """

@@ -62,10 +62,10 @@ def error_metrics(codes, exact) -> dict:
     """The error of `codes` (integers[n, 3]) against `exact` (float64[n, 3], 255*clamp(S, 0, 1)).
 
     `exact` is not rounded, so perfect codes still have errors of up to 1/2 LSB. Only shaded pixels
-    belong here. The keys: `max_lsb`, `mean_lsb` (of magnitudes), `rms_lsb`, `p999_lsb` (99.9 % of the channel values are at
-    most this far off), `correctly_rounded` (the share of channel values equal to `rounded(exact)`)
-    and `psnr_db` (peak 255; None where there is no error at all). No pixels means no error: 0 LSB,
-    a share of 1, and None.
+    belong here. The keys: `max_lsb`, `mean_lsb` (of magnitudes), `rms_lsb`, `p999_lsb` (99.9 % of
+    the channel values are at most this far off), `correctly_rounded` (the share of channel values
+    equal to `rounded(exact)`) and `psnr_db` (peak 255; None where there is no error at all). No
+    pixels means no error: 0 LSB, a share of 1, and None.
     """
     codes, exact = np.asarray(codes), np.asarray(exact, np.float64)
     if codes.shape != exact.shape:

@@ -158,7 +158,7 @@ def points() -> list[Point]:
                 f"table_{2 << k}_newton", root_method="table", start_index_bits=k,
                 root_newton_steps=1,
             ),
-            "1/sqrt: table + Newton", f"{2 << k} constants, 1 step",
+            "1/sqrt: table + Newton", f"{2 << k} constants + 1 step",
         )
         for k in (2, 4, 6)
     ]  # fmt: skip
