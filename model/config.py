@@ -134,6 +134,17 @@ class Config:
     weight: Format = _unsigned(1, 17)  # W(i)
     intensity: Format = _unsigned(1, 24)  # S of one channel, before the scale to the code
 
+    # -- features: what a scene does not need is left out (see model/pruning.py) -------------------
+    specular: bool = True  # W(i) cos(s)^n: a material with W other than 0
+    power_function: bool = True  # cos(s)^n by tables: a material with n other than 1
+    power_bypass: bool = True  # cos(s) itself: a material with n = 1 beside others
+    log_octaves: bool = True  # cos(s) <= 1/2: an n so small that cos(s)^n is not 0 there
+    weight_function: bool = True  # W(i) by a table: a material whose W depends on i
+    diffuse: bool = True  # Cp (1 - d) cos(i): a material with d other than 1
+    environment: bool = True  # Cp d: a material with d other than 0
+    channels: int = 3  # 1: red, green and blue alike
+    two_sided: bool = True  # |Zn| in place of Zn, where a frame asks for it
+
     # -- other methods for the same job, the first the default (see model/sweep.py) ----------------
     normal_method: str = choice("normalize", "none")  # none: shade the interpolated vector itself
     root_method: str = choice("lines", "quadratic", "table", "magic")  # of 1/sqrt

@@ -87,13 +87,17 @@
   + `PHONG_ROUND_SATURATE_LATENCY )
 
 `define PHONG_LOG_LATENCY \
-  ( `PHONG_LEADING_ZEROS_LATENCY     /* leading ones */ \
-  + `PHONG_LEFT_SHIFTER_LATENCY \
+  ( (`PHONG_LOG_OCTAVES ? `PHONG_LEADING_ZEROS_LATENCY + `PHONG_LEFT_SHIFTER_LATENCY : 0) \
+                                     /* leading ones */ \
   + `PHONG_ROM_LATENCY               /* log lookup */ \
   + `PHONG_MULTIPLIER_LATENCY        /* log refine: slope * offset */ \
   + 1                                /* log refine: add */ \
   + `PHONG_LEADING_ZEROS_LATENCY     /* log normalize */ \
   + `PHONG_LEFT_SHIFTER_LATENCY )
+
+`define PHONG_SPECULAR_COSINE_LATENCY \
+  ( 1                                /* 1 - versine */ \
+  + `PHONG_ROUND_SATURATE_LATENCY )
 
 `define PHONG_SPECULAR_POWER_LATENCY \
   ( `PHONG_LOG_LATENCY \
@@ -104,7 +108,7 @@
   + 1                                /* exp refine: subtract */ \
   + 2                                /* exp shift: twice */ \
   + `PHONG_ROUND_SATURATE_LATENCY    /* exp shift: round */ \
-  + 1 )                              /* bypass */
+  + `PHONG_POWER_BYPASS )            /* bypass */
 
 `define PHONG_SPECULAR_WEIGHT_LATENCY \
   ( `PHONG_RAM_LATENCY               /* lookup */ \
@@ -114,13 +118,21 @@
 
 `define PHONG_COLOUR_CHANNEL_LATENCY \
   ( `PHONG_MULTIPLIER_LATENCY        /* intensity: products */ \
-  + 2                                /* intensity: ambient + diffuse, + specular */ \
+  + (`PHONG_ENVIRONMENT & `PHONG_DIFFUSE & `PHONG_SPECULAR ? 2 : 1) \
+                                     /* intensity: ambient + diffuse, + specular */ \
   + 1                                /* intensity: clamp, cut */ \
   + 2 )                              /* code: times 255, round */
 
+`define PHONG_POWER_LATENCY \
+  ( `PHONG_POWER_FUNCTION ? `PHONG_SPECULAR_POWER_LATENCY : `PHONG_SPECULAR_COSINE_LATENCY )
+
+// From the unit normal to the products of eq. (3).
+`define PHONG_SPECULAR_LATENCY \
+  ( `PHONG_SPECULAR ? `PHONG_REFLECTION_LATENCY + `PHONG_POWER_LATENCY \
+                    : `PHONG_SMALL_RAM_LATENCY )
+
 `define PHONG_SHADING_UNIT_LATENCY \
-  ( `PHONG_REFLECTION_LATENCY \
-  + `PHONG_SPECULAR_POWER_LATENCY \
+  ( `PHONG_SPECULAR_LATENCY \
   + `PHONG_COLOUR_CHANNEL_LATENCY )  /* W * power runs beside its products */
 
 // From a pixel that leaves the interpolators to its colour.

@@ -40,7 +40,8 @@ module phong_pipeline #(
     output wire [PIXEL_BITS-1:0] m_axis_tdata,
     output wire                  m_axis_tlast,   // last pixel of the frame
 
-    output wire illegal_span  // for one clock: a span left its word, the counter, or was empty
+    output wire illegal_span,  // for one clock: a span left its word, the counter, or was empty
+    output wire unsupported  // for one clock: a word or a span needs what this build leaves out
 );
 
   // ---- registers ----
@@ -64,7 +65,8 @@ module phong_pipeline #(
       .write_ambient(write_ambient),
       .write_diffuse(write_diffuse),
       .table_address(table_address),
-      .table_word(table_word)
+      .table_word(table_word),
+      .unsupported(unsupported)
   );
 
   // ---- spans to pixels ----

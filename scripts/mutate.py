@@ -44,7 +44,8 @@ SIMULATION_SECONDS = 40
 MUTANT_SECONDS = 150
 
 #: Benches that could notice a change of a file, the cheapest first.
-_UNITS = ("inverse_sqrt", "normalizer", "reflection", "specular_power", "specular_weight")
+_UNITS = ("inverse_sqrt", "normalizer", "reflection", "specular_power", "specular_cosine",
+          "specular_weight")  # fmt: skip
 BENCHES = {
     **{name: ("primitives",) for name in (
         "multiplier", "narrow_multiplier", "leading_zeros", "left_shifter", "round_saturate",

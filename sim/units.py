@@ -125,7 +125,7 @@ MODULES = {
                 _sum(L.format("ALIGN"), MUL, 3),
             ),
             Stage(
-                "normalizer.scale", _components("doubled"),
+                "normalizer.scale", _components("gen_scale.doubled"),
                 _sum(L.format("ALIGN"), MUL, 3, L.format("INVERSE_SQRT"), MUL, 1),
             ),
             Stage(
@@ -171,6 +171,9 @@ MODULES = {
         ),
         late={"exponent": _LOG},
     ),
+    "specular_cosine": Module(
+        ("versine",), (Stage("specular_cosine", ("cosine",), L.format("SPECULAR_COSINE")),)
+    ),
     "specular_weight": Module(
         ("cosine", "material"),
         (
@@ -197,11 +200,14 @@ MODULES = {
             ("write_diffuse", 3), *_TABLE_PORTS,
         ),
         children=(
-            Child("u_reflection", "reflection", "0"),
-            Child("u_specular_power", "specular_power", L.format("REFLECTION")),
+            Child("gen_specular.u_reflection", "reflection", "0"),
             Child(
-                "u_specular_weight", "specular_weight",
-                _sum(L.format("REFLECTION"), L.format("SPECULAR_POWER"),
+                "gen_specular.gen_power.u_specular_power", "specular_power",
+                L.format("REFLECTION"),
+            ),
+            Child(
+                "gen_specular.gen_weight.u_specular_weight", "specular_weight",
+                _sum(L.format("REFLECTION"), L.format("POWER"),
                      "-" + L.format("SPECULAR_WEIGHT")),
             ),
         ),

@@ -55,7 +55,8 @@ def test_the_multipliers_are_counted():
         for child, name in re.findall(r"^\s*(\w+)(?:\s*#\(.*?\))?\s+(u_\w+) \(", text, re.M | re.S):
             times = 1
             for block, copies in per_instance.get(module, {}).items():
-                inside = text[text.index("begin : " + block) : text.index("endgenerate")]
+                start = text.index("begin : " + block)
+                inside = text[start : text.index("endgenerate", start)]
                 times = copies if f" {name} (" in inside else times
             total += times * (1 if child == "multiplier" else count(child))
         return total

@@ -16,6 +16,7 @@ from model.twin.inverse_sqrt import inverse_sqrt
 from model.twin.normalizer import normalizer
 from model.twin.reflection import reflection
 from model.twin.shading_unit import shading_unit
+from model.twin.specular_cosine import specular_cosine
 from model.twin.specular_power import specular_power
 from model.twin.specular_weight import specular_weight
 from sim.unit_tb import UnitTB
@@ -168,6 +169,23 @@ async def specular_power_latency(dut):
     await tb.check_latency([0, 2 * one], [half, 2 * one], "specular_power.bypass")
     await tb.check_latency([0, one], [half, one], "specular_power.bypass")
     await tb.check_latency([half, 2 * one], [half, one], "specular_power.bypass")
+
+
+@_only("specular_cosine")
+async def specular_cosine_exhaustive(dut):
+    """Every versine."""
+    tb = UnitTB(dut, MODULE)
+    for first in range(0, C.versine.max + 1, 1 << 20):
+        v = np.arange(first, first + (1 << 20))
+        trace = {}
+        specular_cosine(v, C, trace)
+        await tb.check([v], trace)
+
+
+@_only("specular_cosine")
+async def specular_cosine_latency(dut):
+    """One operand at a time shows at the stated clock only."""
+    await UnitTB(dut, MODULE).check_latency([0], [C.versine.one // 2], "specular_cosine")
 
 
 # -- specular_weight, shading_unit: with a material table -----------------------------------------
