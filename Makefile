@@ -7,6 +7,7 @@ CLOCK_MHZ ?= 200
 OUT ?=
 SPANS ?=
 TECHNIQUE ?= phong
+PRUNE ?=
 MODULE ?= phong_pipeline
 CONFIG ?= default
 GRADE ?= 6
@@ -18,7 +19,7 @@ PYTHON := .venv/bin/python
 quote = '$(subst ','\'',$(1))'
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test lint results bench synth netlist icarus formal coverage activity mutate \
+.PHONY: help setup run prune test lint results bench synth netlist icarus formal coverage activity mutate \
   hardware waves clean
 
 help: ## this list
@@ -30,6 +31,9 @@ help: ## this list
 	@echo '                CLOCK_MHZ=200   clock of the hardware'
 	@echo '                OUT=build/NAME  folder of the results; NAME is that of the scene (and technique)'
 	@echo '                SPANS=FILE      run a span file (see model/spans.py) in place of a scene'
+	@echo '                PRUNE=1         build without what the scene does not need; or PRUNE=SCENE:'
+	@echo '                                without what that one does not need'
+	@echo 'make prune    what SCENE needs of the pipeline, and why; SCENE=all: what that saves'
 	@echo 'make test     lint, then all tests'
 	@echo 'make lint     Verilator -Wall and Verible on rtl/ and sim/, Ruff on Python'
 	@echo 'make results  the README'"'"'s table of results, measured anew'
@@ -60,7 +64,11 @@ run: setup
 	@$(PYTHON) -m scripts.run --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE)) \
 	  --fps=$(call quote,$(FPS)) --clock-mhz=$(call quote,$(CLOCK_MHZ)) \
 	  --out=$(call quote,$(OUT)) --spans=$(call quote,$(SPANS)) \
-	  --technique=$(call quote,$(TECHNIQUE))
+	  --technique=$(call quote,$(TECHNIQUE)) \
+	  --prune=$(call quote,$(PRUNE))
+
+prune: setup
+	@$(PYTHON) -m scripts.prune --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE))
 
 test: lint
 	@$(PYTHON) -m pytest

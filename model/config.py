@@ -151,6 +151,16 @@ class Config:
     channels: int = 3  # 1: red, green and blue alike
     two_sided: bool = True  # |Zn| in place of Zn, where a frame asks for it
 
+    # -- other methods for the same job, the first the default (see model/sweep.py) ----------------
+    normal_method: str = choice("normalize", "none")  # none: shade the interpolated vector itself
+    root_method: str = choice("lines", "quadratic", "table", "magic")  # of 1/sqrt
+    root_newton_steps: int = 0  # after table or magic: steps of Newton's iteration
+    quadratic_index_bits: int = 4  # parabolas in each of [1, 2) and [2, 4)
+    quadratic_value_bits: int = 20  # table value: u0.20
+    quadratic_slope_bits: int = 18  # units of 2**-23 a segment
+    quadratic_curve_bits: int = 14  # units of 2**-23 a segment squared
+    start_index_bits: int = 6  # constants in each of [1, 2) and [2, 4), in `root`
+
     # -- derived -----------------------------------------------------------------------------------
     @property
     def materials(self) -> int:

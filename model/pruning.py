@@ -67,6 +67,24 @@ def vanishing_exponent(config: Config) -> int:
     return (config.power.fraction + 1) << config.exponent.fraction
 
 
+#: Fields of `Config` that `prune` decides on.
+FEATURES = (
+    "specular", "power_function", "power_bypass", "log_octaves", "weight_function", "diffuse",
+    "environment", "channels", "two_sided",
+)  # fmt: skip
+
+
+def missing(frame: Frame, built: Config, config: Config = DEFAULT) -> list[str]:
+    """What `frame` needs of `config` and `built` leaves out, a line each; empty if it fits."""
+    least, rows = prune(frame, config)
+    lines = []
+    for row in rows:
+        full, here, fits = (getattr(c, row.feature) for c in (config, built, least))
+        if here != full and here != fits:
+            lines.append(f"{row.feature}: {row.why}")
+    return lines
+
+
 def _some(count: int, of: int, what: str) -> str:
     return f"{what} in {count or 'none'} of {of} material{'s' if of != 1 else ''}"
 
@@ -76,6 +94,8 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
 
     Only takes away from `config`, never adds. The name is that of `config` with `pruned` to it.
     """
+    if config.technique != "phong":
+        return _prune_intensities(frame, config)
     f = facts(frame)
     count = len(f.materials)
     rows: list[Row] = []
@@ -138,3 +158,15 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
         "turning of Zn",
     )  # fmt: skip
     return dataclasses.replace(config, name=f"{config.name}-pruned", **chosen), rows
+
+
+def _prune_intensities(frame: Frame, config: Config) -> tuple[Config, list[Row]]:
+    """`prune` where spans carry intensities: for grey, one interpolator will do."""
+    values = frame.spans["start"], frame.spans["step"]
+    coloured = np.any([(v != v[:, :1]).any(axis=1) for v in values], axis=0)
+    why = f"red, green and blue differ in {int(coloured.sum()) or 'none'} of {len(coloured)} spans"
+    row = Row(
+        "channels", bool(coloured.any()), why, "two of three channels, and of the span's words"
+    )
+    channels = config.channels if row.needed else 1
+    return dataclasses.replace(config, name=f"{config.name}-pruned", channels=channels), [row]

@@ -57,7 +57,6 @@ def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:
     start, step = frame.spans["start"].astype(float), frame.spans["step"].astype(float)
     if config.technique != "phong":
         intensity, _ = _pixels(frame.spans, start, step)
-        intensity = np.broadcast_to(intensity[:, : config.values], intensity.shape)
         return 255 * np.clip(intensity / config.normal.one, 0, 1)
     normal, material = _pixels(frame.spans, start, step)
     table, real = frame.materials, config.coefficient.real

@@ -65,7 +65,7 @@ def front_end(
     triangles = _triangles(scene, frame_axes, frame, exact, config)
 
     parts = []
-    for segments, done in _visible(triangles, scene.width, scene.height):
+    for segments, done in visible(triangles, scene.width, scene.height):
         if len(segments):
             parts.append(_spans(triangles, segments, config, scene.interpolation))
         if progress:
@@ -130,7 +130,7 @@ def _triangles(
     )
 
 
-def _visible(triangles: Triangles, width: int, height: int):
+def visible(triangles: Triangles, width: int, height: int):
     """Yield the visible segments of one band of scan lines after the other, from the top, with
     the part of the picture done; bands are cut so that memory stays bounded."""
     first, end = visibility.line_range(triangles, width, height)
@@ -194,7 +194,6 @@ def _spans(triangles: Triangles, segments: Segments, config: Config, interpolati
     spans["length"] = np.where(single[row], 1, length[row])
     spans["material"] = triangles.material[segments.triangle[row]]
     spans["start"], spans["step"] = encode(start[:, :3], step[:, :3], spans["length"], config)
-    spans["start"][:, config.values :] = spans["step"][:, config.values :] = 0
     return spans, start[:, -3:], step[:, -3:]
 
 

@@ -142,11 +142,9 @@ def pack(spans: np.ndarray, config: Config) -> bytes:
     Raises ValueError if a value does not fit its field.
     """
     words = np.zeros((len(spans), record_bits(config) // _WORD), np.uint64)
-    fields = span_fields(config)
-    for name in ("start_x", "start_y", "start_z", "step_x", "step_y", "step_z"):
-        if name not in {field.name for field in fields} and _column(spans, name)[0].any():
-            raise ValueError(f"a span's {name} is not 0, but has no place in a record")
-    for field in fields:
+    if not np.array_equal(spans, _implied(spans, config)):
+        raise ValueError("a span has a step or colours that a record has no place for")
+    for field in span_fields(config):
         value, signed = _column(spans, field.name)
         low = -(1 << (field.bits - 1)) if signed else 0
         if len(value) and not (low <= value.min() and value.max() < low + (1 << field.bits)):
@@ -175,6 +173,16 @@ def unpack(body: bytes, config: Config) -> np.ndarray:
         if signed:
             value -= (value >> (field.bits - 1)) << field.bits
         column[:] = value
+    return _implied(spans, config)
+
+
+def _implied(spans, config):
+    """`spans` with what a record leaves out: one channel is grey, flat shading has no steps."""
+    spans = spans.copy()
+    for what in ("start", "step"):
+        spans[what][:, config.values :] = spans[what][:, :1]
+    if config.technique == "flat":
+        spans["step"] = 0
     return spans
 
 

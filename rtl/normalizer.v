@@ -87,7 +87,7 @@ module normalizer #(
   wire [PRODUCT_BITS:0] product[X:Z];
   wire [PRODUCT_BITS-1:0] scaled_z;
 
-  localparam ROOT_WAIT = `PHONG_MULTIPLIER_LATENCY + 2 + 1 + `PHONG_INVERSE_SQRT_LATENCY;
+  localparam ROOT_WAIT = `PHONG_MULTIPLIER_LATENCY + 2 + 1 + `PHONG_INVERSE_SQRT_METHOD_LATENCY;
 
   wire [3*NORMAL_BITS-1:0] xyz = {z, y, x};
 
@@ -219,7 +219,7 @@ module normalizer #(
 
   wire unused = &{1'b0, sum_p11[OPERAND_DROP-3:0]};
 
-  inverse_sqrt u_inverse_sqrt (
+  inverse_sqrt_method u_inverse_sqrt (
       .clk(clk),
       .operand(operand_p12),
       .root(root)
@@ -227,7 +227,7 @@ module normalizer #(
 
   delay #(
       .BITS  (1),
-      .CYCLES(`PHONG_INVERSE_SQRT_LATENCY + `PHONG_MULTIPLIER_LATENCY)
+      .CYCLES(`PHONG_INVERSE_SQRT_METHOD_LATENCY + `PHONG_MULTIPLIER_LATENCY)
   ) u_below_one (
       .clk(clk),
       .in (below_one_p12),

@@ -9,6 +9,7 @@
 
 module phong_pipeline #(
     parameter TECHNIQUE        = `PHONG_TECHNIQUE,
+    parameter NORMAL_METHOD    = `PHONG_NORMAL_METHOD,
     parameter NORMAL_BITS      = `PHONG_NORMAL_BITS,
     parameter COORDINATE_BITS  = `PHONG_COORDINATE_BITS,
     parameter MATERIAL_BITS    = `PHONG_MATERIAL_BITS,
@@ -159,22 +160,37 @@ module phong_pipeline #(
       wire lit;
       wire [MATERIAL_BITS-1:0] material;
 
-      normalizer u_normalizer (
-          .clk(clk),
-          .two_sided(two_sided),
-          .x(normal_x),
-          .y(normal_y),
-          .z(normal_z),
-          .unit_x(unit_x),
-          .unit_y(unit_y),
-          .unit_z(unit_z),
-          .cosine(cosine),
-          .lit(lit)
-      );
+      if (NORMAL_METHOD == `PHONG_NORMAL_METHOD_NONE) begin : gen_unnormalized
+        unnormalized u_unnormalized (
+            .clk(clk),
+            .two_sided(two_sided),
+            .x(normal_x),
+            .y(normal_y),
+            .z(normal_z),
+            .unit_x(unit_x),
+            .unit_y(unit_y),
+            .unit_z(unit_z),
+            .cosine(cosine),
+            .lit(lit)
+        );
+      end else begin : gen_normalized
+        normalizer u_normalizer (
+            .clk(clk),
+            .two_sided(two_sided),
+            .x(normal_x),
+            .y(normal_y),
+            .z(normal_z),
+            .unit_x(unit_x),
+            .unit_y(unit_y),
+            .unit_z(unit_z),
+            .cosine(cosine),
+            .lit(lit)
+        );
+      end
 
       delay #(
           .BITS  (MATERIAL_BITS),
-          .CYCLES(`PHONG_NORMALIZER_LATENCY)
+          .CYCLES(`PHONG_NORMAL_LATENCY)
       ) u_material (
           .clk(clk),
           .in (pixel_material),

@@ -122,7 +122,8 @@ def test_layout_of_the_default_configuration():
 
 
 def test_layout_of_the_older_techniques():
-    """Gouraud's steps, three colours and one; flat: no steps, and no room for one."""
+    """Gouraud's steps, three colours and one; flat: no steps, and no room for one. What a record
+    leaves out comes back."""
     start, step = (-1, 2, 0x7FFFFFFF), (3, -(2**31), 5)
     place = [(0, 12, 0xABC), (12, 12, 0x123), (24, 13, 0x1000), (37, 4, 9), (41, 1, 1)]
 
@@ -130,7 +131,7 @@ def test_layout_of_the_older_techniques():
         spans = np.zeros(1, SPAN_DTYPE)
         spans[0] = span(0xABC, 0x123, 0x1000, (0, 0, 0), (0, 0, 0), 9, True)
         for what, codes in zip(("start", "step"), values, strict=False):
-            spans[what][0, : len(codes)] = codes
+            spans[what][0] = codes
         whole = pack(spans, config)
         assert unpack(whole, config) == spans
         codes = [code & 0xFFFFFFFF for value in values for code in value]
@@ -145,8 +146,9 @@ def test_layout_of_the_older_techniques():
     assert laid_out(dataclasses.replace(gouraud, **grey), start[:1], step[:1]) == 16
     assert laid_out(flat, start) == 32
     assert laid_out(dataclasses.replace(flat, **grey), start[:1]) == 16
-    with pytest.raises(ValueError, match="step_y is not 0"):
-        laid_out(flat, start, (0, 1, 0))
+    for config, wrong in ((flat, (0, 0, 1)), (dataclasses.replace(gouraud, **grey), step)):
+        with pytest.raises(ValueError, match="no place for"):
+            laid_out(config, start[:1], wrong)
 
 
 def test_body_starts_where_the_header_says(tmp_path):

@@ -52,7 +52,7 @@ def count_dots(segments, width=WIDTH, height=HEIGHT):
 
 def visible(triangles, width=WIDTH, height=HEIGHT):
     """The visible segments of all bands, joined."""
-    bands = [s for s, _ in scene_to_spans._visible(triangles, width, height)]
+    bands = [s for s, _ in scene_to_spans.visible(triangles, width, height)]
     fields = ("triangle", "y", "left", "right")
     return Segments(*(np.concatenate([getattr(b, f) for b in bands]) for f in fields))
 

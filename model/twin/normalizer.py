@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import fixed
 from ..config import Config
-from .inverse_sqrt import inverse_sqrt
+from .inverse_sqrt_method import inverse_sqrt_method
 
 
 def leading_zeros(normal, config: Config):
@@ -78,7 +78,7 @@ def normalizer(normal, two_sided: bool, config: Config, trace: dict | None = Non
     mantissa = align(normal, shift, config)
     square = sum_of_squares(mantissa)
     operand, below_one = root_operand(square, config)
-    root = inverse_sqrt(operand, config, trace)
+    root = inverse_sqrt_method(operand, config, trace)
     product = scale(mantissa, root, below_one)
     unit, cosine = round_unit(product, config)
     if trace is not None:

@@ -15,6 +15,9 @@ from .normal_interpolator import normal_interpolator
 from .normalizer import normalizer
 from .shading_unit import shading_unit
 from .span_walker import span_walker
+from .unnormalized import unnormalized
+
+NORMAL_METHODS = {"normalize": normalizer, "none": unnormalized}
 
 #: Pixels worked on at a time: the temporaries of one block fit the cache.
 BLOCK = 1 << 14
@@ -41,7 +44,7 @@ def interpolate(spans, span, k, config: Config):
 
 def shade(normal, material, frame: Frame, config: Config = DEFAULT, trace: dict | None = None):
     """Codes int64[3, n] of interpolated normals (int64[3, n] in `normal`) and their materials."""
-    unit, cosine, lit = normalizer(normal, frame.two_sided, config, trace)
+    unit, cosine, lit = NORMAL_METHODS[config.normal_method](normal, frame.two_sided, config, trace)
     return shading_unit(unit, cosine, lit, material, frame, config, trace)
 
 

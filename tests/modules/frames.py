@@ -31,7 +31,6 @@ def random_frame(
     ends >>= rng.integers(0, C.normal.bits, spans)[:, None]
     s["start"] = ends[0]
     s["step"] = (ends[1] - ends[0]) // np.maximum(s["length"] - 1, 4)[:, None]
-    s["start"][:, config.values :] = s["step"][:, config.values :] = 0
     if config.technique == "flat":
         s["step"] = 0
     s["last"][-1] = True
