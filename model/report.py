@@ -29,6 +29,7 @@ def make_report(
     comparison: Comparison,
     error: dict,
     bound_lsb: float,
+    pruned_differ: int,
     input_error: dict | None,
     degenerate_triangles: int,
     wall_s: dict,
@@ -37,7 +38,8 @@ def make_report(
 
     simulation: `sim.run_frame.SimResult`; its counters give all cycles. error, input_error: from
     `metrics.error_metrics`; the second is None where there is no scene behind the spans. fps in
-    frames and clock_hz in clocks a second; wall_s in seconds.
+    frames and clock_hz in clocks a second; wall_s in seconds. pruned_differ: pixels in which the
+    model of what was built differs from that of the full design.
     """
     pixels, cycles = len(simulation.pixels.x), simulation.cycles
     mismatches = comparison.mismatches + simulation.extra_pixels
@@ -45,10 +47,12 @@ def make_report(
     return {
         "schema": SCHEMA,
         "scene": scene,
+        "technique": config.technique,
         "size": [frame.width, frame.height],
         "pixels": pixels,
         "spans": len(frame.spans),
         "illegal_spans": simulation.illegal_spans,
+        "unsupported": simulation.unsupported,
         "cycles": cycles,
         "cycles_per_pixel": cycles / pixels if pixels else None,
         "latency_cycles": simulation.latency_cycles,
@@ -62,7 +66,11 @@ def make_report(
             "met": cycles <= available,
             "max_fps": clock_hz / cycles if cycles else None,
         },
-        "compare": {"pixels": comparison.pixels, "mismatches": mismatches},
+        "compare": {
+            "pixels": comparison.pixels,
+            "mismatches": mismatches,
+            "pruned_model_mismatches": pruned_differ,
+        },
         "error": error | {"bound_lsb": bound_lsb},
         "input_error": input_error,
         "degenerate_triangles": degenerate_triangles,
@@ -79,6 +87,15 @@ def failures(report: dict) -> list[str]:
     if compare["mismatches"]:
         lines.append(
             f"{compare['mismatches']} of {compare['pixels']} pixels of RTL and model differ"
+        )
+    if compare["pruned_model_mismatches"]:
+        lines.append(
+            f"{compare['pruned_model_mismatches']} of {compare['pixels']} pixels of the pruned "
+            "model and the full one differ"
+        )
+    if report["unsupported"]:
+        lines.append(
+            f"{report['unsupported']} spans or register writes need what this build leaves out"
         )
     if not budget["met"]:
         lines.append(
@@ -97,7 +114,7 @@ def table(report: dict) -> Table:
     budget, error, wall = report["budget"], report["error"], report["wall_s"]
     width, height = report["size"]
     rows = Table(
-        title=f"{escape(report['scene'])}, {width} x {height}",
+        title=f"{escape(report['scene'])}, {report['technique']}, {width} x {height}",
         show_header=False,
         title_style="bold",
     )
@@ -119,6 +136,8 @@ def table(report: dict) -> Table:
         rows.add_row(
             "illegal spans", count(report["illegal_spans"]), "the error bound does not cover them"
         )
+    if report["unsupported"]:
+        rows.add_row("unsupported", count(report["unsupported"]), "spans or register writes")
     if report["degenerate_triangles"]:
         rows.add_row("triangles skipped", count(report["degenerate_triangles"]), "without area")
     rows.add_section()

@@ -32,7 +32,8 @@ class SimResult:
     pixels: as they came. cycles: clocks from the first span accepted to the last pixel taken.
     latency_cycles: to the first pixel offered. stall_cycles: of `cycles`, those after the first
     pixel in which none was taken. extra_pixels: pixels after the last.
-    build_s, simulate_s: seconds.
+    build_s, simulate_s: seconds. unsupported: spans and register writes that need what the build
+    leaves out.
     """
 
     pixels: Pixels
@@ -44,6 +45,7 @@ class SimResult:
     extra_pixels: int
     build_s: float
     simulate_s: float
+    unsupported: int = 0
 
 
 @dataclass
@@ -133,7 +135,7 @@ def simulate_jobs(
                 SimResult(
                     read_pixels(folder / f"{k}.pixels", config), bool(c["complete"]), c["cycles"],
                     c["latency"], c["stall_cycles"], c["illegal_spans"],
-                    c.get("extra_pixels", 0), build_s, c["seconds"],
+                    c.get("extra_pixels", 0), build_s, c["seconds"], c["unsupported"],
                 )
             )  # fmt: skip
         return results
