@@ -51,6 +51,14 @@ def eye_of(half_vector) -> np.ndarray:
     return 2 * h[2] * h - np.array([0, 0, 1.0])
 
 
+def zero_normals(frame: Frame) -> int:
+    """How many pixels have no direction: their interpolated normal is zero."""
+    normal, _ = _pixels(
+        frame.spans, frame.spans["start"].astype(float), frame.spans["step"].astype(float)
+    )
+    return int((normal == 0).all(axis=1).sum())
+
+
 def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:
     """255 * clamp(S, 0, 1), float64[n, 3], in the order of the stream, from the integers at the
     ports and in the tables."""

@@ -27,6 +27,7 @@ def make_report(
     clock_hz: float,
     simulation,
     comparison: Comparison,
+    zero_normals: int,
     error: dict,
     bound_lsb: float,
     input_error: dict | None,
@@ -36,8 +37,9 @@ def make_report(
     """The contents of `report.json`, ready for JSON: None stands for what is not defined.
 
     simulation: `sim.run_frame.SimResult`; its counters give all cycles. error, input_error: from
-    `metrics.error_metrics`; the second is None where there is no scene behind the spans. fps in
-    frames and clock_hz in clocks a second; wall_s in seconds.
+    `metrics.error_metrics`; the second is None where there is no scene behind the spans.
+    zero_normals: what the model counts. fps in frames and clock_hz in clocks a second; wall_s in
+    seconds.
     """
     pixels, cycles = len(simulation.pixels.x), simulation.cycles
     mismatches = comparison.mismatches + simulation.extra_pixels
@@ -49,6 +51,7 @@ def make_report(
         "pixels": pixels,
         "spans": len(frame.spans),
         "illegal_spans": simulation.illegal_spans,
+        "zero_normals": simulation.zero_normals,
         "cycles": cycles,
         "cycles_per_pixel": cycles / pixels if pixels else None,
         "latency_cycles": simulation.latency_cycles,
@@ -62,7 +65,11 @@ def make_report(
             "met": cycles <= available,
             "max_fps": clock_hz / cycles if cycles else None,
         },
-        "compare": {"pixels": comparison.pixels, "mismatches": mismatches},
+        "compare": {
+            "pixels": comparison.pixels,
+            "mismatches": mismatches,
+            "zero_normals": zero_normals,
+        },
         "error": error | {"bound_lsb": bound_lsb},
         "input_error": input_error,
         "degenerate_triangles": degenerate_triangles,
@@ -79,6 +86,11 @@ def failures(report: dict) -> list[str]:
     if compare["mismatches"]:
         lines.append(
             f"{compare['mismatches']} of {compare['pixels']} pixels of RTL and model differ"
+        )
+    if report["zero_normals"] != compare["zero_normals"]:
+        lines.append(
+            f"the RTL flags {report['zero_normals']} zero vectors, "
+            f"the model {compare['zero_normals']}"
         )
     if not budget["met"]:
         lines.append(
@@ -119,6 +131,8 @@ def table(report: dict) -> Table:
         rows.add_row(
             "illegal spans", count(report["illegal_spans"]), "the error bound does not cover them"
         )
+    if report["zero_normals"]:
+        rows.add_row("zero vectors", count(report["zero_normals"]), "pixels without a direction")
     if report["degenerate_triangles"]:
         rows.add_row("triangles skipped", count(report["degenerate_triangles"]), "without area")
     rows.add_section()

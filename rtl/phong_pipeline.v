@@ -39,7 +39,8 @@ module phong_pipeline #(
     output wire [PIXEL_BITS-1:0] m_axis_tdata,
     output wire                  m_axis_tlast,   // last pixel of the frame
 
-    output wire illegal_span  // for one clock: a span left its word, the counter, or was empty
+    output wire illegal_span,  // for one clock: a span left its word, the counter, or was empty
+    output wire zero_normal    // for one clock: a pixel's normal is the zero vector
 );
 
   // ---- registers ----
@@ -145,7 +146,9 @@ module phong_pipeline #(
 
   normalizer u_normalizer (
       .clk(clk),
+      .reset(reset),
       .two_sided(two_sided),
+      .valid(pixel_valid),
       .x(normal_x),
       .y(normal_y),
       .z(normal_z),
@@ -153,7 +156,8 @@ module phong_pipeline #(
       .unit_y(unit_y),
       .unit_z(unit_z),
       .cosine(cosine),
-      .lit(lit)
+      .lit(lit),
+      .zero_normal(zero_normal)
   );
 
   delay #(

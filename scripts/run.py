@@ -161,6 +161,7 @@ def _run(job, simulate, steps, config, folder):
         clock_hz=job.clock_hz,
         simulation=simulation,
         comparison=comparison,
+        zero_normals=twin.zero_normals(frame, config),
         error=metrics.error_metrics(codes, ideal[:both]),
         bound_lsb=float(bound),
         input_error=metrics.error_metrics(codes, scene_ideal[:both]) if exact else None,

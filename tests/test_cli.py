@@ -85,7 +85,7 @@ def test_a_good_run(start, scene, tmp_path):
 
     report = json.loads((tmp_path / "out/report.json").read_text())
     assert list(report) == [
-        "schema", "scene", "size", "pixels", "spans", "illegal_spans", "cycles",
+        "schema", "scene", "size", "pixels", "spans", "illegal_spans", "zero_normals", "cycles",
         "cycles_per_pixel", "latency_cycles", "stall_cycles", "utilization", "budget", "compare",
         "error", "input_error", "degenerate_triangles", "config", "versions", "wall_s",
     ]  # fmt: skip
@@ -98,7 +98,7 @@ def test_a_good_run(start, scene, tmp_path):
         "fps": 30, "clock_hz": 200_000_000, "cycles_available": 6_666_666, "cycles_used": cycles,
         "met": True, "max_fps": 200e6 / cycles,
     }  # fmt: skip
-    assert report["compare"] == {"pixels": pixels, "mismatches": 0}
+    assert report["compare"] == {"pixels": pixels, "mismatches": 0, "zero_normals": 0}
     keys = {"max_lsb", "rms_lsb", "p999_lsb", "correctly_rounded", "psnr_db"}
     assert set(report["error"]) == keys | {"bound_lsb"} and set(report["input_error"]) == keys
     assert report["config"]["normal"] == str(DEFAULT.normal)

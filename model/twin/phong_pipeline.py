@@ -10,7 +10,7 @@ import numpy as np
 from ..config import DEFAULT, Config
 from ..frame import Frame
 from .normal_interpolator import normal_interpolator
-from .normalizer import normalizer
+from .normalizer import normalizer, zero
 from .shading_unit import shading_unit
 from .span_walker import span_walker
 
@@ -59,3 +59,13 @@ def render(
         if progress:
             progress(block.stop / total)
     return Pixels(x, y, rgb, last)
+
+
+def zero_normals(frame: Frame, config: Config = DEFAULT) -> int:
+    """How many pixels of `frame` have the zero vector for a normal (the RTL flags each)."""
+    spans, count = frame.spans, 0
+    total = int(np.maximum(spans["length"], 1).sum())
+    for first in range(0, total, BLOCK):
+        span, k, *_ = span_walker(spans, first, min(first + BLOCK, total), config)
+        count += int(zero(interpolate(spans, span, k, config)[0]).sum())
+    return count
