@@ -16,7 +16,7 @@ PYTHON := .venv/bin/python
 quote = '$(subst ','\'',$(1))'
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test lint results bench synth netlist formal coverage activity mutate waves clean
+.PHONY: help setup run test lint results stability adversarial bench synth netlist formal coverage activity mutate waves clean
 
 help: ## this list
 	@echo 'make run      render SCENE through the RTL and the model, compare, write pictures and report'
@@ -29,6 +29,8 @@ help: ## this list
 	@echo 'make test     lint, then all tests'
 	@echo 'make lint     Verilator -Wall and Verible on rtl/ and sim/, Ruff on Python'
 	@echo 'make results  the README'"'"'s table of results, measured anew'
+	@echo 'make stability   stiff and extreme cases, a row each: error, bound, RTL against model'
+	@echo 'make adversarial search for the input with the largest error; KEEP=1 keeps a worse one'
 	@echo 'make bench    clocks a second of the simulation, frames a second of the model'
 	@echo 'make synth    synthesis, place and route for an ECP5; build/synth/CONFIG/report.json'
 	@echo '                CONFIG=default  a configuration by name'
@@ -59,6 +61,12 @@ lint: setup
 
 bench: setup
 	@$(PYTHON) -m scripts.bench
+
+stability: setup
+	@$(PYTHON) -m scripts.stability
+
+adversarial: setup
+	@$(PYTHON) -m scripts.adversarial $(if $(KEEP),--keep)
 
 results: setup
 	@$(PYTHON) -m scripts.results

@@ -74,9 +74,14 @@ def make_report(
         "input_error": input_error,
         "degenerate_triangles": degenerate_triangles,
         "config": config.as_dict(),
-        "versions": {"python": platform.python_version()} | {n: version(n) for n in _VERSIONS},
+        "versions": versions(),
         "wall_s": wall_s,
     }
+
+
+def versions() -> dict[str, str]:
+    """The versions of what took part."""
+    return {"python": platform.python_version()} | {name: version(name) for name in _VERSIONS}
 
 
 def failures(report: dict) -> list[str]:

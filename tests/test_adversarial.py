@@ -1,0 +1,72 @@
+"""The worst inputs found, replayed in RTL, and the search that found them."""
+
+import numpy as np
+import pytest
+
+from model import adversarial, error_budget, reference, twin
+from model.adversarial import FAMILIES
+from model.config import DEFAULT as C
+from model.spans import illegal_spans
+from scripts.stability import adversarial_cases, error_rows, power_row
+from sim import stability as table
+
+QUICK = {"points": 512, "rounds": 60, "examples": 60}
+
+
+def test_the_worst_inputs_come_out_of_the_rtl_as_found():
+    rows = table.run_cases(adversarial_cases())
+    for row in rows:
+        assert not row.failures and row.mismatches == 0, f"{row.case}: {row.failures}"
+    errors = error_rows(dict.fromkeys(adversarial.LIMITS, 0.5), rows)
+    for row in errors:
+        assert 0.5 < row["adversarial_lsb"] <= row["adversarial_bound_lsb"], row
+        assert row["adversarial_bound_lsb"] <= row["bound_lsb"], row
+
+
+def test_the_worst_inputs_are_legal():
+    assert [(r["limit"], r["steep"]) for r in adversarial.kept()] == [
+        (f.limit, f.steep) for f in FAMILIES
+    ]
+    for row in adversarial.kept():
+        frame = adversarial.frame(row)
+        assert not illegal_spans(frame, C).any()
+        assert 0 <= row["ambient"] and row["ambient"] + row["diffuse"] <= C.coefficient.one
+        assert C.exponent.one <= row["exponent"] <= row["limit"] * C.exponent.one
+        weight = np.array(row["weight"])
+        assert weight.min() >= 0 and weight.max() <= C.coefficient.one
+        assert row["steep"] or len(set(row["weight"])) == 1
+        assert abs(np.hypot(*row["half_vector"]) / C.half_vector.one - 1) < 2**-16
+        pixels, exact = twin.render(frame), reference.render(frame)
+        assert abs(np.abs(pixels.rgb - exact).max() - row["error_lsb"]) < 1e-9
+
+
+@pytest.mark.parametrize("family", FAMILIES, ids=lambda f: f.name)
+def test_a_short_search(family):
+    """It finds errors beyond rounding, within the bound, and the same ones again."""
+    found = adversarial.search(family, **QUICK)
+    assert 0.505 < found["error_lsb"] <= error_budget.bound_lsb(adversarial.frame(found))
+    assert found == adversarial.search(family, **QUICK)
+
+
+def test_the_search_sees_a_bound_that_is_too_low(monkeypatch):
+    """It would have caught the paper's form of 1 - cos(s), whose error grows with n."""
+
+    def papers(unit, half_vector, config, trace=None):
+        hx, hz = half_vector
+        x, _, z = unit
+        n_h = (hx * x + hz * z) >> config.half_vector.fraction
+        cos_s = 2 * n_h * n_h - (1 << 2 * config.unit.fraction)
+        v = (1 << 2 * config.unit.fraction) - np.maximum(cos_s, 0)
+        shift = 2 * config.unit.fraction - config.versine.fraction
+        return np.clip(v >> shift, 0, config.versine.max)
+
+    monkeypatch.setattr(twin.shading_unit, "reflection", papers)
+    found = adversarial.search(FAMILIES[2], **QUICK)
+    assert found["error_lsb"] > FAMILIES[2].bound_lsb()
+
+
+def test_the_power_alone():
+    said = power_row(adversarial.power_errors())
+    assert not said.failures
+    rows = [{"n": 20, "max_error": 0.0002, "bound": 0.0001, "codes": 1}]
+    assert len(power_row(rows).failures) == 2
