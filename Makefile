@@ -10,13 +10,15 @@ MODULE ?= phong_pipeline
 CONFIG ?= default
 GRADE ?= 6
 SEEDS ?= 3
+GATES ?=
 
 PYTHON := .venv/bin/python
 # An argument for the shell, whatever is in it.
 quote = '$(subst ','\'',$(1))'
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test lint results stability adversarial bench synth netlist formal coverage activity mutate waves clean
+.PHONY: help setup run test lint results bench synth netlist icarus formal coverage activity mutate \
+  hardware waves clean
 
 help: ## this list
 	@echo 'make run      render SCENE through the RTL and the model, compare, write pictures and report'
@@ -36,11 +38,17 @@ help: ## this list
 	@echo '                CONFIG=default  a configuration by name'
 	@echo '                GRADE=6         speed grade of the chip, 6 or 8'
 	@echo '                SEEDS=3         how many placements to try; the median counts'
+	@echo '                GATES=1         count gate equivalents in standard cells, too (minutes)'
 	@echo 'make netlist  whole frames through the netlist in ECP5 cells, against the model'
 	@echo 'make coverage line, branch and toggle coverage of rtl/ by the module and frame tests'
 	@echo 'make activity register toggles a pixel of every bundled scene'
 	@echo 'make waves    MODULE=phong_pipeline: a waveform of a short run, grouped for GTKWave'
-	@echo 'make mutate   change each constant of rtl/ by one and run the module tests: slow; FILES=, SAMPLE='
+	@echo 'make icarus   the module tests once more in Icarus Verilog, with unknown values (minutes)'
+	@echo 'make mutate   change each constant and operator of rtl/, run the module tests (an hour or two)'
+	@echo '                FILES="a b"     of these modules only'
+	@echo '                KIND=operator   or KIND=constant'
+	@echo '                SAMPLE=20       so many at random'
+	@echo 'make hardware the README'"'"'s table of hardware, proofs and tests, from the last results'
 	@echo 'make formal   prove flow control and the interpolators, and that broken designs fail (minutes)'
 	@echo 'make setup    install the pinned packages into .venv; the other targets do this by themselves'
 	@echo 'make clean    remove build/ (.venv stays)'
@@ -62,6 +70,7 @@ lint: setup
 bench: setup
 	@$(PYTHON) -m scripts.bench
 
+.PHONY: stability adversarial
 stability: setup
 	@$(PYTHON) -m scripts.stability
 
@@ -73,7 +82,7 @@ results: setup
 
 synth: setup
 	@$(PYTHON) -m scripts.synth --config=$(call quote,$(CONFIG)) --grade=$(call quote,$(GRADE)) \
-	  --seeds=$(call quote,$(SEEDS))
+	  --seeds=$(call quote,$(SEEDS)) --gates=$(call quote,$(GATES))
 
 netlist: setup
 	@$(PYTHON) -m scripts.netlist
@@ -88,8 +97,15 @@ waves: setup
 	@$(PYTHON) -m scripts.waves $(call quote,$(MODULE))
 
 mutate: setup
-	@$(PYTHON) -m scripts.mutate_constants $(if $(FILES),--files $(FILES)) \
+	@$(PYTHON) -m scripts.mutate $(if $(FILES),--files $(FILES)) $(if $(KIND),--kind $(KIND)) \
 	  $(if $(SAMPLE),--sample $(SAMPLE))
+
+icarus: setup
+	@$(PYTHON) -m scripts.icarus
+
+hardware: setup
+	@$(PYTHON) -m scripts.records
+
 formal: setup
 	@$(PYTHON) -m scripts.formal
 

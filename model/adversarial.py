@@ -239,7 +239,7 @@ def _gathered(points: list[dict]) -> tuple[Inputs, np.ndarray]:
 
 
 def search(
-    family: Family, points: int = 4096, rounds: int = 1500, examples: int = 1500, seed: int = 75,
+    family: Family, points: int = 4096, rounds: int = 5000, examples: int = 1500, seed: int = 75,
     progress: Callable[[float], None] | None = None,
 ) -> dict:  # fmt: skip
     """The worst input found, as a row for `KEPT`. The same for the same arguments."""

@@ -18,6 +18,8 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
+from scripts import records
+from scripts.records import Row
 from sim.build import BUILD, ROOT
 
 TESTS = ("tests/test_modules.py", "tests/test_frames.py")
@@ -73,6 +75,13 @@ def main() -> int:
         share = f"{100 * covered / len(of_kind):.2f} %"
         table.add_row(kind, str(len(of_kind)), str(covered), share)
     Console().print(table)
+    share = {k: f"{100 * s['covered'] / s['points']:.4g} %" for k, s in summary.items()}
+    records.save(
+        "coverage", "make coverage", ("verilator",),
+        [Row("line and branch coverage of `rtl/`", f"{share['line']} and {share['branch']}; "
+             f"toggles {share['toggle']}", f"by the module and frame tests; {len(WAIVERS)} lines "
+             "waived")],
+    )  # fmt: skip
     for kind, name, line, what in sorted(missing):
         print(f"not covered: rtl/{name}:{line} ({kind} {what})", file=sys.stderr)
     (BUILD / "coverage.json").write_text(json.dumps(summary, indent=2) + "\n")

@@ -13,7 +13,8 @@ from rich.table import Table
 
 from model.config import DEFAULT, Config
 from model.frame import InputError
-from scripts import synthesis
+from scripts import records, synthesis
+from scripts.records import Row
 from scripts.run import Steps
 
 CONFIGS = {config.name: config for config in (DEFAULT,)}
@@ -26,12 +27,13 @@ class _Parser(argparse.ArgumentParser):
         raise InputError(message)
 
 
-def parse(argv) -> tuple[Config, int, tuple[int, ...]]:
-    """Configuration, speed grade and seeds that `argv` asks for. Raises InputError."""
+def parse(argv) -> tuple[Config, int, tuple[int, ...], bool]:
+    """Configuration, speed grade, seeds, and whether to count gates. Raises InputError."""
     parser = _Parser(prog="synth", description=__doc__.partition("\n")[0])
     parser.add_argument("--config", default="", help="name of a configuration")
     parser.add_argument("--grade", default="", help="speed grade of the chip")
     parser.add_argument("--seeds", default="", help="how many seeds to route")
+    parser.add_argument("--gates", default="", help="1: count gate equivalents, too")
     given = parser.parse_args(argv)
     name, grade, seeds = given.config or "default", given.grade or "6", given.seeds or "3"
     if name not in CONFIGS:
@@ -40,7 +42,11 @@ def parse(argv) -> tuple[Config, int, tuple[int, ...]]:
         raise InputError(f"GRADE is `{grade}`; it must be 6 or 8")
     if not (seeds.isascii() and seeds.isdigit() and 1 <= int(seeds) <= 100):
         raise InputError(f"SEEDS is `{seeds}`, not a number from 1 to 100")
-    return CONFIGS[name], int(grade), tuple(range(1, int(seeds) + 1))
+    if given.gates not in ("", "0", "1"):
+        raise InputError(f"GATES is `{given.gates}`, not 0 or 1")
+    if given.gates == "1" and not synthesis.LIBERTY.is_file():
+        raise InputError("GATES=1 needs a library of cells: apt-get install qflow-tech-osu018")
+    return CONFIGS[name], int(grade), tuple(range(1, int(seeds) + 1)), given.gates == "1"
 
 
 def table(report: dict) -> Table:
@@ -63,25 +69,70 @@ def table(report: dict) -> Table:
     out.add_row("pixels", f"{report['pixels_per_s'] / 1e6:.1f} M/s")
     for size, rate in report["frames_per_s"].items():
         out.add_row(f"frames {size}", f"{rate}/s")
+    if gates := report.get("gates"):
+        out.add_row(f"gate equivalents, {gates['library']}", str(gates["equivalents"]))
     out.add_row("longest path", f"{worst['from']['module']} to {worst['to']['module']}, "
                 f"{worst['delay_ns']} ns")  # fmt: skip
+    return out
+
+
+def rows(report: dict) -> list[Row]:
+    """The lines of `report` for the README's table."""
+    used, clock, grade = report["resources"], report["fmax_mhz"], report["grade"]
+    chip = f"{report['device']}, grade {grade}"
+    out = [
+        Row(
+            f"clock on a Lattice ECP5 {chip}",
+            f"{clock['median']} MHz, median of {len(report['seeds'])} seeds; best {clock['best']}",
+            f"an estimate of timing, no chip; nextpnr does not check the {report['limit_by']}'s "
+            f"{report['limit_mhz']} MHz, to which it is clamped",
+        )
+    ]
+    if grade == 6:
+        out += [
+            Row(
+                "multipliers, block RAMs",
+                f"{used['dsp']} MULT18X18D, {used['ebr']} DP16KD",
+                "without the harness of shift registers that stands in for pins",
+            ),
+            Row(
+                "logic",
+                f"{used['lut']} LUT4, {used['carry']} carry cells, {used['lut_ram']} LUT RAM "
+                f"cells, {used['ff']} FF",
+                f"together {used['lut_sites']} LUT sites: a carry cell takes two, a LUT RAM cell "
+                "four",
+            ),
+        ]
+    if gates := report.get("gates"):
+        out.append(
+            Row(
+                "gate equivalents (NAND2)",
+                f"{gates['equivalents']}",
+                "Oklahoma State University's 0.18 µm cells (Debian's qflow-tech-osu018), without "
+                "the three ROMs and the RAM of the tables; no clock tree, no wires: not an area",
+            )
+        )
     return out
 
 
 def main(argv=None) -> int:
     """Run with the command line `argv`; returns the exit code."""
     try:
-        config, grade, seeds = parse(argv)
+        config, grade, seeds, gates = parse(argv)
     except InputError as error:
         print(f"Error: {error}", file=sys.stderr)
         return 2
     steps = Steps()
     try:
-        report = synthesis.run(config, grade, seeds, steps.step)
+        report = synthesis.run(config, grade, seeds, gates, steps.step)
     except synthesis.SynthesisError as error:
         print(f"Error: {error}", file=sys.stderr)
         return 1
     Console().print(table(report))
+    if config == DEFAULT:
+        packages = tuple(report["tools"])
+        command = "make synth" + (f" GRADE={grade}" if grade != 6 else "")
+        records.save(f"synth-grade{grade}", command, packages, rows(report))
     print(f"build/synth/{config.name}/report.json")
     return 0
 

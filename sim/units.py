@@ -279,7 +279,9 @@ def bench_source(module: str, parameters: dict[str, int] | None = None) -> tuple
     assigns = []
     for k, lane in enumerate(observed):
         assigns.append(f"  wire signed [63:0] lane_{k} = {lane.signal};")
-        assigns.append(f"  assign signals[{64 * k}+:64] = lane_{k};")
+        # An unknown, which a file cannot hold, becomes a value that no signal has.
+        known = f"^lane_{k} === 1'bx ? {{1'b1, 63'b0}} : lane_{k}"
+        assigns.append(f"  assign signals[{64 * k}+:64] = {known};")
         assigns.append(f"  assign latencies[{64 * k}+:64] = {lane.latency};")
     set_parameters = ", ".join(f".{n}({v})" for n, v in (parameters or {}).items())
     top = f"{module}_bench"

@@ -12,17 +12,12 @@ import pytest
 from model.config import DEFAULT as C
 from model.spans import illegal_spans
 from model.twin import render
-from sim import primitives
+from sim.benches import NAMES, module_bench
 from sim.build import Bench
 from sim.run_frame import Job, simulate_jobs
-from sim.units import bench_source
 from tests.modules.frames import random_frame
 
 SEED = 75
-DATAPATH = (
-    "inverse_sqrt", "normalizer", "reflection", "specular_power", "specular_weight",
-    "shading_unit",
-)  # fmt: skip
 
 
 def outcome(results, folder) -> list[str]:
@@ -48,23 +43,10 @@ def run(bench: Bench, module: str, tests: str, folder) -> None:
         pytest.fail("\n".join(failures), pytrace=False)
 
 
-@pytest.mark.parametrize("module", DATAPATH)
-def test_datapath(module, tmp_path):
-    top, text = bench_source(module)
-    run(Bench(top, sources={f"{top}.v": text}), module, "tests.modules.datapath", tmp_path)
-
-
-def test_primitives(tmp_path):
-    bench = Bench(primitives.TOP, sources={f"{primitives.TOP}.v": primitives.source()})
-    run(bench, "primitives", "tests.modules.primitives", tmp_path)
-
-
-def test_control(tmp_path):
-    run(Bench("control_bench"), "control", "tests.modules.control", tmp_path)
-
-
-def test_phong_pipeline(tmp_path):
-    run(Bench("pipeline_bench"), "phong_pipeline", "tests.modules.phong_pipeline", tmp_path)
+@pytest.mark.parametrize("name", NAMES)
+def test_module(name, tmp_path):
+    about = module_bench(name)
+    run(Bench(about.top, sources=about.sources), name, about.tests, tmp_path)
 
 
 def same_pixels(got, frame) -> bool:
