@@ -45,7 +45,7 @@ class Family:
     @property
     def name(self) -> str:
         """In words."""
-        return f"n ≤ {self.limit}, W {'with a step' if self.steep else 'constant'}"
+        return f"n ≤ {self.limit}, {'any W' if self.steep else 'W constant'}"
 
     def bound_lsb(self) -> float:
         """The largest derived bound of the family, over angles of the eye and exponents."""

@@ -50,22 +50,24 @@ def _as_found(row, frame, got) -> list[str]:
     return [] if abs(error - row["error_lsb"]) < 1e-9 else [f"the error is {error:.6f} LSB"]
 
 
-def scene_errors(cases, results) -> dict[int, float]:
-    """The worst error of the bundled scenes over the materials with n up to each limit."""
-    worst = dict.fromkeys(adversarial.LIMITS, 0.0)
+def scene_errors(cases, results) -> dict[adversarial.Family, float]:
+    """The worst error of the bundled scenes over the materials that belong to each family."""
+    worst = dict.fromkeys(adversarial.FAMILIES, 0.0)
     for case, result in zip(cases, results, strict=True):
-        frame = case.frame
-        n = C.exponent.real(frame.materials.exponent)[frame.spans["material"]]
-        n = np.repeat(n, frame.spans["length"])
-        error = stability.errors(frame, result.pixels.rgb)
-        for limit in worst:
-            worst[limit] = max(worst[limit], float(error[n <= limit].max(initial=0)))
+        table, spans = case.frame.materials, case.frame.spans
+        material = np.repeat(spans["material"], spans["length"])
+        n = C.exponent.real(table.exponent)[material]
+        constant = (np.ptp(table.weight, axis=1) == 0)[material]
+        error = stability.errors(case.frame, result.pixels.rgb)
+        for family in worst:
+            belongs = (n <= family.limit) & (constant | family.steep)
+            worst[family] = max(worst[family], float(error[belongs].max(initial=0)))
     return worst
 
 
-def error_rows(scenes: dict[int, float], worst: list[simulated.Row]) -> list[dict]:
-    """A row a family: derived bound, worst of the bundled scenes (whose W is none of a step),
-    worst input found, as it came out of the RTL."""
+def error_rows(scenes: dict[adversarial.Family, float], worst: list[simulated.Row]) -> list[dict]:
+    """A row a family: derived bound, worst of the bundled scenes, and the worst input found, as it
+    came out of the RTL."""
     found = {(r["limit"], r["steep"]): w for r, w in zip(adversarial.kept(), worst, strict=True)}
     return [
         {
@@ -73,7 +75,7 @@ def error_rows(scenes: dict[int, float], worst: list[simulated.Row]) -> list[dic
             "limit": family.limit,
             "steep": family.steep,
             "bound_lsb": family.bound_lsb(),
-            "scenes_lsb": None if family.steep else scenes[family.limit],
+            "scenes_lsb": scenes[family],
             "adversarial_lsb": found[family.limit, family.steep].max_lsb,
             "adversarial_bound_lsb": found[family.limit, family.steep].bound_lsb,
         }
