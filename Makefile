@@ -31,6 +31,9 @@ help: ## this list
 	@echo 'make test     lint, then all tests'
 	@echo 'make lint     Verilator -Wall and Verible on rtl/ and sim/, Ruff on Python'
 	@echo 'make results  the README'"'"'s table of results, measured anew'
+	@echo 'make report      one page of all results: build/report/index.html'
+	@echo 'make test-report the page in headless Chromium: what it draws, its controls'
+	@echo 'make test-all    make test and make test-report in one'
 	@echo 'make stability   stiff and extreme cases, a row each: error, bound, RTL against model'
 	@echo 'make adversarial search for the input with the largest error; KEEP=1 keeps a worse one'
 	@echo 'make bench    clocks a second of the simulation, frames a second of the model'
@@ -70,7 +73,18 @@ lint: setup
 bench: setup
 	@$(PYTHON) -m scripts.bench
 
-.PHONY: stability adversarial
+.PHONY: report test-report test-all stability adversarial
+report: setup
+	@$(PYTHON) -m scripts.report
+
+test-report: setup
+	@command -v chromium >/dev/null || \
+	  { echo 'The report page is tested in Chromium: apt-get install chromium' >&2; exit 2; }
+	@$(PYTHON) -m pytest -m browser
+
+test-all: lint
+	@$(PYTHON) -m pytest -m ''
+
 stability: setup
 	@$(PYTHON) -m scripts.stability
 

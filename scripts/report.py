@@ -208,7 +208,7 @@ def _error(row: dict, name: str) -> float | None:
         return row.get(name) or None
     if row.get("correctly_rounded") is None:
         return None
-    return max(1 - row["correctly_rounded"], 1 / (3 * row.get("pixels") or 1e6))
+    return max(1 - row["correctly_rounded"], 1 / (3 * (row.get("pixels") or 1e6)))
 
 
 def _hover(row: dict) -> str:
@@ -291,22 +291,20 @@ def tessellation_plots(rows: list[dict]) -> dict[str, dict]:
 
 
 def error_plot(rows: list[dict]) -> dict:
-    """Bound, bundled scenes and worst input found, for each family of inputs."""
+    """Bound, worst input found and bundled scenes, each beyond ½, for each family of inputs."""
     kinds = (
         ("bound_lsb", "derived bound"), ("adversarial_lsb", "worst input found"),
         ("scenes_lsb", "bundled scenes"),
     )  # fmt: skip
     traces = [
         go.Bar(
-            name=name, x=[r["family"] for r in rows], y=[r[key] for r in rows],
-            marker_color=COLOURS[k], hovertemplate="%{x}<br>" + name + ": %{y:.4f} LSB"
-            "<extra></extra>",
+            name=name, x=[r["family"] for r in rows], y=[r[key] - 0.5 for r in rows],
+            customdata=[r[key] for r in rows], marker_color=COLOURS[k],
+            hovertemplate="%{x}<br>" + name + ": %{customdata:.4f} LSB<extra></extra>",
         )
         for k, (key, name) in enumerate(kinds)
     ]  # fmt: skip
-    return figure(
-        traces, barmode="group", yaxis=_axis("largest error, LSB") | {"range": [0.45, 0.85]}
-    )
+    return figure(traces, barmode="group", yaxis=_axis("LSB beyond the ½ of perfect rounding"))
 
 
 def stages_plot(scenes: list[SceneResult]) -> dict:
