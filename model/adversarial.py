@@ -189,8 +189,7 @@ def _climb(family, inputs, angle, rounds, rng, progress) -> Inputs:
             order = np.argsort(-best, kind="stable")
             order[count // 2 :] = order[: count - count // 2]
             inputs, angle, best = inputs.take(order), angle[order], best[order]
-        if progress:
-            progress((k + 1) / rounds)
+        progress((k + 1) / rounds)
     return inputs.take(np.argsort(-best, kind="stable"))
 
 
@@ -239,23 +238,36 @@ def _gathered(points: list[dict]) -> tuple[Inputs, np.ndarray]:
 
 
 def search(
-    family: Family, points: int = 4096, rounds: int = 5000, examples: int = 1500, seed: int = 75,
+    family: Family, points: int = 4096, rounds: int = 1500, examples: int = 1500, climbs: int = 3,
     progress: Callable[[float], None] | None = None,
 ) -> dict:  # fmt: skip
-    """The worst input found, as a row for `KEPT`. The same for the same arguments."""
-    rng = np.random.default_rng([seed, family.limit, family.steep])
-    inputs, angle = _start(family, points, rng)
-    given, given_angle = _gathered(_explore(family, examples))
-    count = min(len(given_angle), points)
-    for name in inputs.__dataclass_fields__:
-        getattr(inputs, name)[..., :count] = getattr(given, name)[..., :count]
-    angle[:count] = given_angle[:count]
-    inputs = _climb(family, inputs, angle, rounds, rng, progress).take(slice(0, 256))
+    """The worst input found in `climbs` climbs of `points` points, as a row for `KEPT`. The same
+    for the same arguments."""
+    explored = _gathered(_explore(family, examples))
+    rows = []
+    for climb in range(climbs):
+        rng = np.random.default_rng([climb, family.limit, family.steep])
+        inputs, angle = _start(family, points, rng)
+        if climb == 0:
+            count = min(len(explored[1]), points)
+            for name in inputs.__dataclass_fields__:
+                getattr(inputs, name)[..., :count] = getattr(explored[0], name)[..., :count]
+            angle[:count] = explored[1][:count]
 
-    # Every Cp d, for each of the best.
-    room = np.arange(AMBIENT + 1)
-    inputs = inputs.take(np.repeat(np.arange(256), len(room)))
-    inputs = replace(inputs, ambient=np.tile(room, 256))
+        def done(part, climb=climb):
+            if progress:
+                progress((climb + part) / climbs)
+
+        rows.append(_worst(family, _climb(family, inputs, angle, rounds, rng, done)))
+    return max(rows, key=lambda row: row["error_lsb"])
+
+
+def _worst(family: Family, inputs: Inputs) -> dict:
+    """The worst of the first of `inputs`, each with every Cp d."""
+    inputs = inputs.take(slice(0, 256))
+    count, room = inputs.normal.shape[1], np.arange(AMBIENT + 1)
+    inputs = inputs.take(np.repeat(np.arange(count), len(room)))
+    inputs = replace(inputs, ambient=np.tile(room, count))
     codes, _, exact = evaluate(inputs)
     worst = int(np.argmax(np.abs(codes - exact)))
     one = inputs.take([worst])

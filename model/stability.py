@@ -329,7 +329,9 @@ def _light() -> Iterator[Case]:
 def _terminator() -> Iterator[Case]:
     around = np.linspace(0, 2 * np.pi, 28, endpoint=False)
     rim = C.normal.quantize(np.stack([np.cos(around), np.sin(around), 0 * around], axis=1))
-    for bits, name in ((0, "exactly"), (16, "but for 2⁻¹⁶"), (8, "but for 2⁻⁸")):
+    ways = ((0, "exactly", False), (0, "exactly, two-sided", True), (16, "but for 2⁻¹⁶", False),
+            (8, "but for 2⁻⁸", False))  # fmt: skip
+    for bits, name, two_sided in ways:
         angle = np.pi - (2.0**-bits if bits else 0)
         across = _span(np.repeat(rim - [0, 0, 8], 14, axis=0), [0, 0, 1], 17,
                        np.tile(np.arange(14), 28))  # fmt: skip
@@ -340,7 +342,7 @@ def _terminator() -> Iterator[Case]:
             f"Zn through 0 in steps of one unit; eye opposite the light {name}: the formula jumps "
             "from Cp d to Cp d + W",
             "the jump falls between the same two integers; so no larger bound is needed",
-            _frame(np.concatenate([across, steep]), angle=angle),
+            _frame(np.concatenate([across, steep]), angle=angle, two_sided=two_sided),
             dark_stays_ambient,
         )
 
@@ -462,13 +464,14 @@ def _triangles() -> Iterator[Case]:
         "slivers", "2000 triangles a thousandth of a pixel wide and 300 pixels high", every,
         tiled(_grid(2.3, 2, 1000, 1, 0.001, 300), 8, 304), _fills(2.3, 2, 3.3, 302),
     )  # fmt: skip
-    for size, cells in ((1.0, 24), (0.1, 120)):
-        end = 1.25 + cells * size
+    for side, cells in ((1.0, 12), (0.1, 120)):
+        wide, high = 2 * side, side
         yield Case(
-            f"triangles of {size / 2 if size == 1 else 0.005:g} pixel",
-            f"a square cut into triangles with sides of {size:g} pixel", every,
-            tiled(_grid(1.25, 1.25, cells, cells, size, size), 32, 32),
-            _fills(1.25, 1.25, end, end),
+            f"triangles of {side * side:g} pixel",
+            f"a rectangle cut into triangles of {side * side:g} pixel, {wide:g} wide and "
+            f"{high:g} high", every,
+            tiled(_grid(1.25, 1.25, cells, cells, wide, high), 32, 32),
+            _fills(1.25, 1.25, 1.25 + cells * wide, 1.25 + cells * high),
         )  # fmt: skip
     corners = _grid(3, 3, 5, 5, 5, 5)
     flat = corners[np.arange(200) % 50].copy()

@@ -114,6 +114,15 @@ def error_table(rows: list[dict]) -> Table:
     return table
 
 
+def error_lines(rows: list[dict]) -> list[str]:
+    """The same as lines of the README's table."""
+    return [
+        f"| {row['family']} | {row['bound_lsb']:.3f} | {row['scenes_lsb']:.3f} "
+        f"| {row['adversarial_lsb']:.3f} |"
+        for row in rows
+    ]
+
+
 def power_table(rows: list[dict]) -> Table:
     """The error of cos(s)**n alone."""
     table = Table(title="cos(s)ⁿ alone, every code of 1 − cos(s)", title_style="bold")

@@ -6,21 +6,33 @@ import pytest
 from model import adversarial, error_budget, reference, twin
 from model.adversarial import FAMILIES
 from model.config import DEFAULT as C
+from model.scene import bundled_scenes
 from model.spans import illegal_spans
-from scripts.stability import adversarial_cases, error_rows, power_row
+from scripts.stability import (
+    adversarial_cases,
+    error_lines,
+    error_rows,
+    power_row,
+    scene_errors,
+)
 from sim import stability as table
+from sim.build import ROOT
 
-QUICK = {"points": 512, "rounds": 60, "examples": 60}
+README = (ROOT / "README.md").read_text()
+QUICK = {"points": 512, "rounds": 60, "examples": 60, "climbs": 1}
 
 
 def test_the_worst_inputs_come_out_of_the_rtl_as_found():
     rows = table.run_cases(adversarial_cases())
     for row in rows:
         assert not row.failures and row.mismatches == 0, f"{row.case}: {row.failures}"
-    errors = error_rows(dict.fromkeys(FAMILIES, 0.5), rows)
-    for row in errors:
+    scenes = [table.scene_case(name) for name in bundled_scenes()]
+    errors = error_rows(scene_errors(scenes, table.results(scenes)), rows)
+    for row, line in zip(errors, error_lines(errors), strict=True):
+        assert line in README, "the README's table is old: make stability"
         assert 0.5 < row["adversarial_lsb"] <= row["adversarial_bound_lsb"], row
         assert row["adversarial_bound_lsb"] <= row["bound_lsb"], row
+        assert row["scenes_lsb"] <= row["adversarial_lsb"], "a scene is worse than the search"
 
 
 def test_the_worst_inputs_are_legal():
@@ -66,7 +78,9 @@ def test_the_search_sees_a_bound_that_is_too_low(monkeypatch):
 
 
 def test_the_power_alone():
-    said = power_row(adversarial.power_errors())
-    assert not said.failures
+    errors = adversarial.power_errors()
+    assert not power_row(errors).failures
+    at_20 = next(row["max_error"] for row in errors if row["n"] == 20)
+    assert f"at n = 20 it is {at_20:.2g}," in README
     rows = [{"n": 20, "max_error": 0.0002, "bound": 0.0001, "codes": 1}]
     assert len(power_row(rows).failures) == 2
