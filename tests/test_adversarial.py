@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from model import adversarial, error_budget, reference, twin
+from model import adversarial, error_budget, reference, stability, twin
 from model.adversarial import FAMILIES
 from model.config import DEFAULT as C
 from model.scene import bundled_scenes
@@ -33,6 +33,12 @@ def test_the_worst_inputs_come_out_of_the_rtl_as_found():
         assert 0.5 < row["adversarial_lsb"] <= row["adversarial_bound_lsb"], row
         assert row["adversarial_bound_lsb"] <= row["bound_lsb"], row
         assert row["scenes_lsb"] <= row["adversarial_lsb"], "a scene is worse than the search"
+
+
+def test_the_rows_are_counted():
+    single = ("shared edges", "powers", "long run", "large frame")
+    rows = len(stability.cases()) + len(FAMILIES) + len(bundled_scenes()) + len(single)
+    assert f"runs {rows} stiff and extreme cases" in README
 
 
 def test_the_worst_inputs_are_legal():
