@@ -1,6 +1,6 @@
 // register_map: the write port: registers, and strobes for the material table.
 // Write only between frames: what is written changes the pixels in flight.
-// Latency 1.
+// Latency 1 to the strobes, 2 to the registers.
 `default_nettype none
 `include "phong_config.vh"
 
@@ -43,11 +43,16 @@ module register_map #(
   wire [INDEX_BITS-1:0] field = write_address[INDEX_BITS-1:0];
   wire write_field = write_enable & ~is_weight;
 
+  reg write_half_x, write_half_z, write_control;
+
   integer c;
   always @(posedge clk) begin
-    if (write_field & (field == HALF_X)) half_x <= write_word[HALF_BITS-1:0];
-    if (write_field & (field == HALF_Z)) half_z <= write_word[HALF_BITS-1:0];
-    if (write_field & (field == CONTROL)) two_sided <= write_word[0];
+    write_half_x <= write_field & (field == HALF_X);
+    write_half_z <= write_field & (field == HALF_Z);
+    write_control <= write_field & (field == CONTROL);
+    if (write_half_x) half_x <= table_word[HALF_BITS-1:0];
+    if (write_half_z) half_z <= table_word[HALF_BITS-1:0];
+    if (write_control) two_sided <= table_word[0];
     write_weight <= write_enable & is_weight;
     write_exponent <= write_field & (field == EXPONENT);
     for (c = 0; c < 3; c = c + 1) begin
