@@ -82,6 +82,7 @@ _PIPELINE = "spans in, their pixels out, in order, after a constant time, at ful
 _PIPELINE_TWINS = (
     Twin("phong_pipeline", "overflow = overflow_x | overflow_y | overflow_z;",
          "overflow = overflow_x | overflow_y;", "a_illegal"),
+    Twin("normalizer", "& ~sign_p3 &", "&", "a_zero"),
     Twin("phong_pipeline", ".out_ready(m_axis_tready),", ".out_ready(1'b1),", "a_stable"),
     Twin("phong_pipeline", ".span_y(span_y),", ".span_y(span_x),", "a_order_and_place"),
 )  # fmt: skip
