@@ -118,10 +118,16 @@ class Config:
             if names and getattr(self, f.name) not in names:
                 said = f"{f.name} is `{getattr(self, f.name)}`, not one of {', '.join(names)}"
                 raise ValueError(said)
+        if self.channels not in (1, 3):
+            raise ValueError(f"channels is {self.channels}, not 1 or 3")
+
+    # -- technique ---------------------------------------------------------------------------------
+    technique: str = choice("phong", "gouraud", "flat")  # what is interpolated: normals, or
+    #   intensities from the vertices, or nothing: one intensity a face
 
     # -- spans and pixels --------------------------------------------------------------------------
     coordinate_bits: int = 12  # x and y: pictures of up to 4096 x 4096
-    normal: Format = _signed(1, 30)  # interpolated normal, one component; also its step
+    normal: Format = _signed(1, 30)  # what is interpolated, one component; also its step
     material_bits: int = 4  # 16 materials
     colour_bits: int = 8  # code of red, green, blue
 
@@ -179,6 +185,16 @@ class Config:
     constant_ambient: tuple = constants("red", "green", "blue")
     constant_diffuse: tuple = constants("red", "green", "blue")
 
+    # -- other methods for the same job, the first the default (see model/sweep.py) ----------------
+    normal_method: str = choice("normalize", "none")  # none: shade the interpolated vector itself
+    root_method: str = choice("lines", "quadratic", "table", "magic")  # of 1/sqrt
+    root_newton_steps: int = 0  # after table or magic: steps of Newton's iteration
+    quadratic_index_bits: int = 4  # parabolas in each of [1, 2) and [2, 4)
+    quadratic_value_bits: int = 20  # table value: u0.20
+    quadratic_slope_bits: int = 18  # units of 2**-23 a segment
+    quadratic_curve_bits: int = 14  # units of 2**-23 a segment squared
+    start_index_bits: int = 6  # constants in each of [1, 2) and [2, 4), in `root`
+
     # -- derived -----------------------------------------------------------------------------------
     @property
     def materials(self) -> int:
@@ -189,6 +205,11 @@ class Config:
     def weight_points(self) -> int:
         """Number of points of W(i): equally spaced over 0 <= Zn <= 1, both ends included."""
         return (1 << self.weight_index_bits) + 1
+
+    @property
+    def values(self) -> int:
+        """How many values a span carries over its pixels: a normal's x, y, z, or intensities."""
+        return 3 if self.technique == "phong" else self.channels
 
     @property
     def max_size(self) -> int:
@@ -210,3 +231,10 @@ class Config:
 
 
 DEFAULT = Config()
+
+#: The configuration of each technique by name.
+TECHNIQUES = {
+    "phong": DEFAULT,
+    "gouraud": Config(name="gouraud", technique="gouraud"),
+    "flat": Config(name="flat", technique="flat"),
+}

@@ -149,6 +149,8 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
 
     Only takes away from `config`, never adds. The name is that of `config` with `pruned` to it.
     """
+    if config.technique != "phong":
+        return _prune_intensities(frame, config)
     f = facts(frame, config)
     count = len(f.materials)
     rows: list[Row] = []
@@ -241,14 +243,14 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
             feature, codes.any(), values, _many(len(values), "colour of the term"), saves,
             "the term is 0",
         )  # fmt: skip
-    lit_at_all = specular or f.diffuse.any()
     shifts = f.shifts
-    fold(
-        "constant_shift", lit_at_all, shifts[:, None],
+    decide(
+        "constant_shift",
+        len(shifts) > 1 or config.normal_method == "none"
+        or config.normal.bits - 1 in shifts,  # the zero vector, which is to be flagged
         f"shifts from {shifts[0]} to {shifts[-1]}" if len(shifts) > 1
-        else f"{'every normal is' if len(shifts) else 'no normals to be'} shifted by "
-        f"{shifts[0] if len(shifts) else 0}",
-        "leading zeros of the components, their shifters", "nothing is lit",
+        else f"every normal is shifted by {shifts[0]}" if len(shifts) else "no normal but 0",
+        "leading zeros of the components, their shifters", without=tuple(shifts.tolist()),
     )  # fmt: skip
     for axis, name in enumerate("xyz"):
         moving = int((f.steps[:, axis] != 0).sum())
@@ -282,3 +284,15 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
             f"top bits of {what}",
         )  # fmt: skip
     return dataclasses.replace(config, name=f"{config.name}-pruned", **chosen), rows
+
+
+def _prune_intensities(frame: Frame, config: Config) -> tuple[Config, list[Row]]:
+    """`prune` where spans carry intensities: for grey, one interpolator will do."""
+    values = frame.spans["start"], frame.spans["step"]
+    coloured = np.any([(v != v[:, :1]).any(axis=1) for v in values], axis=0)
+    why = f"red, green and blue differ in {int(coloured.sum()) or 'none'} of {len(coloured)} spans"
+    row = Row(
+        "channels", bool(coloured.any()), why, "two of three channels, and of the span's words"
+    )
+    channels = config.channels if row.needed else 1
+    return dataclasses.replace(config, name=f"{config.name}-pruned", channels=channels), [row]

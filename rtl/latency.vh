@@ -3,6 +3,7 @@
 // other way to read it; every module's testbench asserts it.
 `ifndef PHONG_LATENCY_VH
 `define PHONG_LATENCY_VH
+`include "phong_config.vh"
 
 `define PHONG_MULTIPLIER_LATENCY 2         // operand register, product register
 `define PHONG_NARROW_MULTIPLIER_LATENCY 4  // 8 rows, three levels of an adder tree
@@ -20,20 +21,67 @@
   + 1                                /* refine: subtract */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
+// The other methods for 1/sqrt.
+`define PHONG_INVERSE_SQRT_QUADRATIC_LATENCY \
+  ( 1                                /* lookup: align, address */ \
+  + `PHONG_ROM_LATENCY \
+  + `PHONG_MULTIPLIER_LATENCY        /* bend: curve * offset */ \
+  + 1                                /* bend: subtract */ \
+  + `PHONG_MULTIPLIER_LATENCY        /* refine: slope * offset */ \
+  + 1                                /* refine: subtract */ \
+  + `PHONG_ROUND_SATURATE_LATENCY )
+
+`define PHONG_NEWTON_STEP_LATENCY \
+  ( `PHONG_MULTIPLIER_LATENCY        /* error: square */ \
+  + `PHONG_ROUND_SATURATE_LATENCY \
+  + `PHONG_MULTIPLIER_LATENCY        /* error: times x */ \
+  + 1                                /* error: from 1 */ \
+  + `PHONG_MULTIPLIER_LATENCY        /* better: times y */ \
+  + 1                                /* better: add */ \
+  + `PHONG_ROUND_SATURATE_LATENCY )
+
+`define PHONG_INVERSE_SQRT_START_LATENCY \
+  ( 1                                /* align, address; magic: align */ \
+  + `PHONG_ROM_LATENCY )             /* magic: subtract, shift */
+
+`define PHONG_INVERSE_SQRT_ITERATED_LATENCY \
+  ( `PHONG_INVERSE_SQRT_START_LATENCY \
+  + `PHONG_ROOT_NEWTON_STEPS * `PHONG_NEWTON_STEP_LATENCY )
+
+`define PHONG_INVERSE_SQRT_METHOD_LATENCY \
+  ( `PHONG_ROOT_METHOD == `PHONG_ROOT_METHOD_LINES ? `PHONG_INVERSE_SQRT_LATENCY : \
+    `PHONG_ROOT_METHOD == `PHONG_ROOT_METHOD_QUADRATIC ? `PHONG_INVERSE_SQRT_QUADRATIC_LATENCY : \
+    `PHONG_INVERSE_SQRT_ITERATED_LATENCY )
+
 `define PHONG_ALIGN_LATENCY \
   ( (`PHONG_CONSTANT_SHIFT ? 0 : 1 + `PHONG_LEADING_ZEROS_LATENCY + `PHONG_LEFT_SHIFTER_LATENCY) \
                                      /* significant bits of three components; shift */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
+
+// From a normal to zero_normal.
+`define PHONG_ZERO_NORMAL_LATENCY \
+  ( 1                                /* significant bits of three components */ \
+  + `PHONG_LEADING_ZEROS_LATENCY \
+  + 1 )
 
 `define PHONG_NORMALIZER_LATENCY \
   ( `PHONG_ALIGN_LATENCY \
   + `PHONG_MULTIPLIER_LATENCY        /* squares */ \
   + 2                                /* sum of squares */ \
   + 1                                /* operand of the root */ \
-  + `PHONG_INVERSE_SQRT_LATENCY \
+  + `PHONG_INVERSE_SQRT_METHOD_LATENCY \
   + `PHONG_MULTIPLIER_LATENCY        /* scale */ \
   + 1                                /* scale: double */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
+
+`define PHONG_UNNORMALIZED_LATENCY \
+  ( 1                                /* |Zn| */ \
+  + `PHONG_ROUND_SATURATE_LATENCY )
+
+// From the interpolators to the shading unit.
+`define PHONG_NORMAL_LATENCY \
+  ( `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_NONE ? `PHONG_UNNORMALIZED_LATENCY : \
+    `PHONG_NORMALIZER_LATENCY )
 
 `define PHONG_REFLECTION_LATENCY \
   ( (`PHONG_CONSTANT_HALF_VECTOR ? `PHONG_CONSTANT_HALF_VECTOR_LEVELS \
@@ -109,7 +157,14 @@
   ( `PHONG_SPECULAR_LATENCY \
   + `PHONG_COLOUR_CHANNEL_LATENCY )  /* W * power runs beside its products */
 
+`define PHONG_INTENSITY_CODE_LATENCY \
+  ( 1                                /* clamp, cut */ \
+  + 2 )                              /* code: times 255, round */
+
 // From a pixel that leaves the interpolators to its colour.
-`define PHONG_PIXEL_LATENCY (`PHONG_NORMALIZER_LATENCY + `PHONG_SHADING_UNIT_LATENCY)
+`define PHONG_PIXEL_LATENCY \
+  ( `PHONG_TECHNIQUE == `PHONG_TECHNIQUE_PHONG \
+  ? `PHONG_NORMAL_LATENCY + `PHONG_SHADING_UNIT_LATENCY \
+  : `PHONG_INTENSITY_CODE_LATENCY )  /* Gouraud, flat */
 
 `endif

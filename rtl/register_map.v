@@ -1,6 +1,6 @@
 // register_map: the write port: registers, and strobes for the material table.
 // Write only between frames: what is written changes the pixels in flight.
-// Latency 1.
+// Latency 1 to the strobes, 2 to the registers.
 `default_nettype none
 `include "phong_config.vh"
 
@@ -61,9 +61,7 @@ module register_map #(
   wire is_weight = ~write_address[MATERIAL_BITS+INDEX_BITS];
   wire [INDEX_BITS-1:0] field = write_address[INDEX_BITS-1:0];
   wire write_field = write_enable & ~is_weight;
-  reg write_control;
-
-  reg write_half_x, write_half_z;
+  reg write_half_x, write_half_z, write_control;
 
   integer c;
   always @(posedge clk) begin
@@ -89,8 +87,8 @@ module register_map #(
       reg [HALF_BITS-1:0] x, z;
 
       always @(posedge clk) begin
-        if (write_field & (field == HALF_X)) x <= write_word[HALF_BITS-1:0];
-        if (write_field & (field == HALF_Z)) z <= write_word[HALF_BITS-1:0];
+        if (write_half_x) x <= table_word[HALF_BITS-1:0];
+        if (write_half_z) z <= table_word[HALF_BITS-1:0];
       end
 
       assign half_x = x;
@@ -99,7 +97,7 @@ module register_map #(
 
     if (TWO_SIDED) begin : gen_two_sided
       reg turn;
-      always @(posedge clk) if (write_field & (field == CONTROL)) turn <= write_word[0];
+      always @(posedge clk) if (write_control) turn <= table_word[0];
       assign two_sided = turn;
     end else begin : gen_one_sided
       assign two_sided = 1'b0;

@@ -282,7 +282,7 @@ module specular_power #(
   wire [WHOLE_BITS-1:0] whole_p25;
   reg [EXP_VALUE_BITS-1:0] line_p25;
 
-  narrow_multiplier #(
+  slope_multiplier #(
       .A_BITS(EXP_SLOPE_BITS),
       .B_BITS(EXP_OFFSET_BITS)
   ) u_exp_slope (

@@ -6,6 +6,7 @@ import numpy as np
 
 from model import error_budget, registers, spans
 from model.config import DEFAULT as C
+from model.config import TECHNIQUES
 from sim.build import ROOT, RTL
 from sim.formal.proofs import PROOFS
 from sim.latency import latencies
@@ -22,6 +23,9 @@ def test_latencies():
         assert f"{block} ({of[block]})" in README, block
     assert f"colour_channel ×3 ({of['colour_channel']})" in README
     assert f"the first comes {of['pixel'] + 3} clocks after its span" in README
+    for older in ("gouraud", "flat"):
+        pixel = latencies(TECHNIQUES[older])["pixel"]
+        assert f"the first pixel {pixel + 3} clocks after its span" in " ".join(README.split())
 
 
 def test_bounds():

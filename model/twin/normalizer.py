@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import fixed
 from ..config import Config
-from .inverse_sqrt import inverse_sqrt
+from .inverse_sqrt_method import inverse_sqrt_method
 
 
 def leading_zeros(normal, config: Config):
@@ -71,6 +71,11 @@ def lit(normal, two_sided: bool):
     return (normal[2] > 0) | (two_sided & (normal[2] < 0))
 
 
+def zero(normal):
+    """Whether it is the zero vector, bool[n]: `zero_normal` of the RTL."""
+    return (normal == 0).all(axis=0)
+
+
 def normalizer(normal, two_sided: bool, config: Config, trace: dict | None = None):
     """Unit normal, |cos(i)| and whether they are lit, of interpolated normals.
 
@@ -81,7 +86,7 @@ def normalizer(normal, two_sided: bool, config: Config, trace: dict | None = Non
     mantissa = align(normal, shift, config)
     square = sum_of_squares(mantissa)
     operand, below_one = root_operand(square, config)
-    root = inverse_sqrt(operand, config, trace)
+    root = inverse_sqrt_method(operand, config, trace)
     product = scale(mantissa, root, below_one)
     unit, cosine = round_unit(product, config)
     if trace is not None:
@@ -92,4 +97,5 @@ def normalizer(normal, two_sided: bool, config: Config, trace: dict | None = Non
         trace["normalizer.scale"] = tuple(product)
         trace["normalizer.round"] = (*unit, cosine)
         trace["normalizer.lit"] = (lit(normal, two_sided).astype(np.int64),)
+        trace["normalizer.zero"] = (zero(normal).astype(np.int64),)
     return unit, cosine, lit(normal, two_sided)
