@@ -73,7 +73,8 @@ run: setup
 	  --prune=$(call quote,$(PRUNE))
 
 prune: setup
-	@$(PYTHON) -m scripts.prune --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE))
+	@$(PYTHON) -m scripts.prune --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE)) \
+	  --seeds=$(call quote,$(SEEDS))
 
 test: lint
 	@$(PYTHON) -m pytest

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .config import DEFAULT, Config
+from .config import DEFAULT, TECHNIQUES, Config
 from .frame import Frame
 from .twin.normalizer import leading_zeros
 from .twin.phong_pipeline import BLOCK, interpolate
@@ -114,6 +114,21 @@ def vanishing_exponent(config: Config) -> int:
     """
     return (config.power.fraction + 1) << config.exponent.fraction
 
+
+_MATTE = dict(
+    specular=False, power_function=False, power_bypass=False, log_octaves=False,
+    weight_function=False, two_sided=False,
+)  # fmt: skip
+
+#: Configurations by hand, beside those of a scene. paper: W one number a material, "n from 1 to
+#: 10", one-sided, as in Phong 1975.
+BY_HAND = {
+    "paper": Config(name="paper", weight_function=False, two_sided=False),
+    "diffuse": Config(name="diffuse", **_MATTE),
+    "diffuse grey": Config(name="diffuse-grey", channels=1, **_MATTE),
+    "gouraud": TECHNIQUES["gouraud"],
+    "flat": TECHNIQUES["flat"],
+}
 
 #: Fields of `Config` that `prune` decides on.
 FEATURES = (
