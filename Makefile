@@ -6,6 +6,8 @@ FPS ?= 30
 CLOCK_MHZ ?= 200
 OUT ?=
 SPANS ?=
+TECHNIQUE ?= phong
+PRUNE ?=
 MODULE ?= phong_pipeline
 CONFIG ?= default
 GRADE ?= 6
@@ -17,17 +19,21 @@ PYTHON := .venv/bin/python
 quote = '$(subst ','\'',$(1))'
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test lint results bench synth netlist icarus formal coverage activity mutate \
+.PHONY: help setup run prune test lint results bench synth netlist icarus formal coverage activity mutate \
   hardware waves clean
 
 help: ## this list
 	@echo 'make run      render SCENE through the RTL and the model, compare, write pictures and report'
 	@echo '                SCENE=teapot    a bundled scene, or a path to a scene file or a mesh'
 	@echo '                SIZE=640x480    width x height; else the size that the scene gives'
+	@echo '                TECHNIQUE=phong interpolates normals; or gouraud, flat'
 	@echo '                FPS=30          frames a second that the cycle budget is checked for'
 	@echo '                CLOCK_MHZ=200   clock of the hardware'
-	@echo '                OUT=build/NAME  folder of the results; NAME is that of the scene'
+	@echo '                OUT=build/NAME  folder of the results; NAME is that of the scene (and technique)'
 	@echo '                SPANS=FILE      run a span file (see model/spans.py) in place of a scene'
+	@echo '                PRUNE=1         build without what the scene does not need; or PRUNE=SCENE:'
+	@echo '                                without what that one does not need'
+	@echo 'make prune    what SCENE needs of the pipeline, and why; SCENE=all: what that saves'
 	@echo 'make test     lint, then all tests'
 	@echo 'make lint     Verilator -Wall and Verible on rtl/ and sim/, Ruff on Python'
 	@echo 'make results  the README'"'"'s table of results, measured anew'
@@ -62,7 +68,12 @@ setup:
 run: setup
 	@$(PYTHON) -m scripts.run --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE)) \
 	  --fps=$(call quote,$(FPS)) --clock-mhz=$(call quote,$(CLOCK_MHZ)) \
-	  --out=$(call quote,$(OUT)) --spans=$(call quote,$(SPANS))
+	  --out=$(call quote,$(OUT)) --spans=$(call quote,$(SPANS)) \
+	  --technique=$(call quote,$(TECHNIQUE)) \
+	  --prune=$(call quote,$(PRUNE))
+
+prune: setup
+	@$(PYTHON) -m scripts.prune --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE))
 
 test: lint
 	@$(PYTHON) -m pytest

@@ -97,10 +97,16 @@ class Config:
             if names and getattr(self, f.name) not in names:
                 said = f"{f.name} is `{getattr(self, f.name)}`, not one of {', '.join(names)}"
                 raise ValueError(said)
+        if self.channels not in (1, 3):
+            raise ValueError(f"channels is {self.channels}, not 1 or 3")
+
+    # -- technique ---------------------------------------------------------------------------------
+    technique: str = choice("phong", "gouraud", "flat")  # what is interpolated: normals, or
+    #   intensities from the vertices, or nothing: one intensity a face
 
     # -- spans and pixels --------------------------------------------------------------------------
     coordinate_bits: int = 12  # x and y: pictures of up to 4096 x 4096
-    normal: Format = _signed(1, 30)  # interpolated normal, one component; also its step
+    normal: Format = _signed(1, 30)  # what is interpolated, one component; also its step
     material_bits: int = 4  # 16 materials
     colour_bits: int = 8  # code of red, green, blue
 
@@ -134,6 +140,27 @@ class Config:
     weight: Format = _unsigned(1, 17)  # W(i)
     intensity: Format = _unsigned(1, 24)  # S of one channel, before the scale to the code
 
+    # -- features: what a scene does not need is left out (see model/pruning.py) -------------------
+    specular: bool = True  # W(i) cos(s)^n: a material with W other than 0
+    power_function: bool = True  # cos(s)^n by tables: a material with n other than 1
+    power_bypass: bool = True  # cos(s) itself: a material with n = 1 beside others
+    log_octaves: bool = True  # cos(s) <= 1/2: an n so small that cos(s)^n is not 0 there
+    weight_function: bool = True  # W(i) by a table: a material whose W depends on i
+    diffuse: bool = True  # Cp (1 - d) cos(i): a material with d other than 1
+    environment: bool = True  # Cp d: a material with d other than 0
+    channels: int = 3  # 1: red, green and blue alike
+    two_sided: bool = True  # |Zn| in place of Zn, where a frame asks for it
+
+    # -- other methods for the same job, the first the default (see model/sweep.py) ----------------
+    normal_method: str = choice("normalize", "none")  # none: shade the interpolated vector itself
+    root_method: str = choice("lines", "quadratic", "table", "magic")  # of 1/sqrt
+    root_newton_steps: int = 0  # after table or magic: steps of Newton's iteration
+    quadratic_index_bits: int = 4  # parabolas in each of [1, 2) and [2, 4)
+    quadratic_value_bits: int = 20  # table value: u0.20
+    quadratic_slope_bits: int = 18  # units of 2**-23 a segment
+    quadratic_curve_bits: int = 14  # units of 2**-23 a segment squared
+    start_index_bits: int = 6  # constants in each of [1, 2) and [2, 4), in `root`
+
     # -- derived -----------------------------------------------------------------------------------
     @property
     def materials(self) -> int:
@@ -144,6 +171,11 @@ class Config:
     def weight_points(self) -> int:
         """Number of points of W(i): equally spaced over 0 <= Zn <= 1, both ends included."""
         return (1 << self.weight_index_bits) + 1
+
+    @property
+    def values(self) -> int:
+        """How many values a span carries over its pixels: a normal's x, y, z, or intensities."""
+        return 3 if self.technique == "phong" else self.channels
 
     @property
     def max_size(self) -> int:
@@ -165,3 +197,10 @@ class Config:
 
 
 DEFAULT = Config()
+
+#: The configuration of each technique by name.
+TECHNIQUES = {
+    "phong": DEFAULT,
+    "gouraud": Config(name="gouraud", technique="gouraud"),
+    "flat": Config(name="flat", technique="flat"),
+}

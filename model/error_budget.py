@@ -40,7 +40,7 @@ def direction(config: Config) -> float:
     return np.sqrt(3) * _round(config.mantissa) / 0.5
 
 
-def inverse_sqrt(config: Config) -> float:
+def lines(config: Config) -> float:
     """Relative error of `inverse_sqrt` against 1/sqrt of its own operand.
 
     Straight lines moved halfway: h**2/16 f''; f''/f = 3/(4 x**2), the worst of each octave at its
@@ -52,6 +52,68 @@ def inverse_sqrt(config: Config) -> float:
     value = 2.0**-config.root_value_bits
     line = 0.75 * h**2 / 16
     return line + (value / 2 + value / 16 + value / 8 + _round(config.root)) / 0.5
+
+
+def parabolas(config: Config) -> float:
+    """Relative error of `inverse_sqrt_quadratic` against 1/sqrt of its own operand.
+
+    Through Chebyshev's points: h**3/192 f'''; |f'''|/f = 15/(8 x**3), its worst in the segment
+    against the smallest f there, sqrt(1 + h/x) less. Half a unit of the value, and of slope and
+    curve (8 times finer), the cuts of two products, and the final rounding.
+    """
+    h = 2.0**-config.quadratic_index_bits
+    value = 2.0**-config.quadratic_value_bits
+    curve = 15 / 8 * h**3 / 192 * np.sqrt(1 + h)
+    return curve + (value / 2 + 2 * value / 16 + 2 * value / 8 + _round(config.root)) / 0.5
+
+
+def start(config: Config) -> float:
+    """Relative error of the first estimate of `inverse_sqrt_iterated`.
+
+    Table: half the range of a segment against its lower end, (sqrt(1 + h/x) - 1)/2, the worst at
+    the left end of an octave, and rounding. Magic: the estimate is a line a - b x in each of three
+    pieces (x = 1 to 2; from 2 to where the result's exponent falls; to 4), so that its product with
+    sqrt(x) is at its worst at the ends or at x = a/(3 b); and the cut to the word.
+    """
+    if config.root_method == "table":
+        return (np.sqrt(1 + 2.0**-config.start_index_bits) - 1) / 2 + _round(config.root) / 0.5
+    constant = (0x5F3759DF - 127 * 2**22 - 125 * 2**23) / 2**23  # 1.93: 2 + log2 of the result
+    fall = 2 + 4 * (constant - 1.5)  # log2 of x read as 1 + f is 2 (constant - 1): exponent falls
+    # Result for log (the number read from x): 2**(i - 2) (1 + constant - log/2 - i), i = 1 or 0.
+    pieces = (  # x from, to; a, b
+        (1.0, 2.0, (constant + 0.5) / 2, 0.25),  # log = x - 1, i = 1
+        (2.0, fall, constant / 2, 0.125),  # log = x/2, i = 1
+        (fall, 4.0, (1 + constant) / 4, 0.0625),  # i = 0
+    )
+    worst = 0.0
+    for low, high, a, b in pieces:
+        x = np.array([low, high, np.clip(a / (3 * b), low, high)])
+        worst = max(worst, float(np.abs((a - b * x) * np.sqrt(x) - 1).max()))
+    return worst + config.root.lsb / 0.48
+
+
+def newton(error: float, config: Config) -> float:
+    """Relative error after `newton_step` from an estimate of relative error `error`.
+
+    y (1 + e/2), e = 1 - x y**2 = -2 d - d**2 with d the estimate's error, leaves 3/2 d**2 + d**3/2.
+    Half of what is wrong with e: x cut, y**2 rounded (y is 0.48 or more), e itself cut and one
+    unit too small. Then the final rounding, or the clamp at 1.
+    """
+    x_cut = 2.0 ** -(config.root.bits - 2)
+    wrong = x_cut + _round(config.root) / 0.48**2 + 2 * 2.0 ** -(config.root.bits + 1)
+    return 1.5 * error**2 + 0.5 * error**3 + wrong * (1 + error) ** 2 / 2 + config.root.lsb / 0.5
+
+
+def inverse_sqrt(config: Config) -> float:
+    """Relative error of 1/sqrt of its own operand, by the method of `config`."""
+    if config.root_method == "lines":
+        return lines(config)
+    if config.root_method == "quadratic":
+        return parabolas(config)
+    error = start(config)
+    for _ in range(config.root_newton_steps):
+        error = newton(error, config)
+    return error
 
 
 def root_operand(config: Config) -> float:
@@ -137,12 +199,19 @@ def weight(points, config: Config) -> float:
 
 
 def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
-    """The budget of one material of `frame`; the last row bounds |code - 255 S| in LSB."""
+    """The budget of one material of `frame`; the last row bounds |code - 255 S| in LSB.
+
+    S is eq. (3) at the pixel; for Gouraud and flat shading, the interpolated intensity.
+    """
+    white = (1 << config.colour_bits) - 1
+    if config.technique != "phong":
+        cut = Row("cut of S", config.intensity.lsb, "interpolation is exact, the sum is cut once")
+        total = white * cut.bound + 0.5
+        return [cut, Row("code", total, f"LSB: {white} times the cut, and the final rounding")]
     table = frame.materials
     n = float(config.exponent.real(table.exponent[material]))
     diffuse = float(config.coefficient.real(table.diffuse[material]).max())
     w = float(config.coefficient.real(table.weight[material]).max())
-    white = (1 << config.colour_bits) - 1
     parts = [
         Row("normalizer: direction", direction(config), "mantissas of the normal, radians"),
         Row("normalizer: length", length(config), "1/sqrt and its operand, relative"),
@@ -165,7 +234,17 @@ def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
     return [*parts, Row("code", total, f"LSB: {white} times the terms, and the final rounding")]
 
 
-def bound_lsb(frame: Frame, config: Config = DEFAULT) -> float:
-    """Bound of |code - 255 S| in LSB over the materials that `frame` uses (1/2 if it has none)."""
+def derived(config: Config) -> bool:
+    """Whether the budget covers the methods of `config`."""
+    return config.normal_method == "normalize"
+
+
+def bound_lsb(frame: Frame, config: Config = DEFAULT) -> float | None:
+    """Bound of |code - 255 S| in LSB over the materials that `frame` uses (1/2 if it has none).
+
+    None where no bound is derived for a method of `config`.
+    """
+    if not derived(config):
+        return None
     used = np.unique(frame.spans["material"]).tolist()
     return max((rows(m, frame, config)[-1].bound for m in used), default=0.5)

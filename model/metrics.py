@@ -62,23 +62,24 @@ def error_metrics(codes, exact) -> dict:
     """The error of `codes` (integers[n, 3]) against `exact` (float64[n, 3], 255*clamp(S, 0, 1)).
 
     `exact` is not rounded, so perfect codes still have errors of up to 1/2 LSB. Only shaded pixels
-    belong here. The keys: `max_lsb`, `rms_lsb`, `p999_lsb` (99.9 % of the channel values are at
-    most this far off), `correctly_rounded` (the share of channel values equal to `rounded(exact)`)
-    and `psnr_db` (peak 255; None where there is no error at all). No pixels means no error: 0 LSB,
-    a share of 1, and None.
+    belong here. The keys: `max_lsb`, `mean_lsb` (of magnitudes), `rms_lsb`, `p999_lsb` (99.9 % of
+    the channel values are at most this far off), `correctly_rounded` (the share of channel values
+    equal to `rounded(exact)`) and `psnr_db` (peak 255; None where there is no error at all). No
+    pixels means no error: 0 LSB, a share of 1, and None.
     """
     codes, exact = np.asarray(codes), np.asarray(exact, np.float64)
     if codes.shape != exact.shape:
         raise ValueError(f"codes are {codes.shape}, the exact values {exact.shape}")
     if codes.size == 0:
         return {
-            "max_lsb": 0.0, "rms_lsb": 0.0, "p999_lsb": 0.0, "correctly_rounded": 1.0,
-            "psnr_db": None,
+            "max_lsb": 0.0, "mean_lsb": 0.0, "rms_lsb": 0.0, "p999_lsb": 0.0,
+            "correctly_rounded": 1.0, "psnr_db": None,
         }  # fmt: skip
     error = np.abs(codes - exact)
     mean_square = float(np.mean(error**2))
     return {
         "max_lsb": float(error.max()),
+        "mean_lsb": float(error.mean()),
         "rms_lsb": mean_square**0.5,
         "p999_lsb": float(np.quantile(error, 0.999, method="higher")),
         "correctly_rounded": float(np.mean(codes == rounded(exact))),

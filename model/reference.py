@@ -66,9 +66,11 @@ def zero_normals(frame: Frame) -> int:
 def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:
     """255 * clamp(S, 0, 1), float64[n, 3], in the order of the stream, from the integers at the
     ports and in the tables."""
-    normal, material = _pixels(
-        frame.spans, frame.spans["start"].astype(float), frame.spans["step"].astype(float)
-    )
+    start, step = frame.spans["start"].astype(float), frame.spans["step"].astype(float)
+    if config.technique != "phong":
+        intensity, _ = _pixels(frame.spans, start, step)
+        return 255 * np.clip(intensity / config.normal.one, 0, 1)
+    normal, material = _pixels(frame.spans, start, step)
     table, real = frame.materials, config.coefficient.real
     return shade(
         normal, real(table.ambient)[material], real(table.diffuse)[material],
@@ -77,9 +79,11 @@ def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:
     )  # fmt: skip
 
 
-def render_exact(frame: Frame, exact: ExactFrame) -> np.ndarray:
+def render_exact(frame: Frame, exact: ExactFrame, config: Config = DEFAULT) -> np.ndarray:
     """The same from the scene's values before any rounding."""
     normal, m = _pixels(frame.spans, exact.start, exact.step)
+    if config.technique != "phong":
+        return 255 * np.clip(normal, 0, 1)
     cp, d = exact.cp, exact.d[:, None]
     return shade(
         normal, (cp * d)[m], (cp * (1 - d))[m], exact.weight[m], exact.exponent[m],

@@ -26,24 +26,43 @@ def word_bits(config: Config) -> int:
 
 
 def writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
-    """(address, word) of every write that `frame` needs: registers and the materials in use."""
+    """(address, word) of every write that `frame` needs: registers and the materials in use.
+
+    What a build leaves out is written only where the frame does need it; the RTL answers such a
+    write with `unsupported`. Nothing is written where intensities come with the spans.
+    """
+    if config.technique != "phong":
+        return []
     kind = 1 << (config.material_bits + config.weight_index_bits)
     word_mask = (1 << word_bits(config)) - 1
     table = frame.materials
-    out = [
-        (kind | FIELDS["half_x"], frame.half_vector[0] & word_mask),
-        (kind | FIELDS["half_z"], frame.half_vector[1] & word_mask),
-        (kind | FIELDS["control"], int(frame.two_sided)),
-    ]
+    out = []
+
+    def write(name, word, base=0, channel=0, needed=True):
+        if needed:
+            out.append((kind | base | (FIELDS[name] + channel), int(word) & word_mask))
+
+    write("half_x", frame.half_vector[0])
+    write("half_z", frame.half_vector[1])
+    write("control", frame.two_sided, needed=config.two_sided or frame.two_sided)
     for material in np.unique(frame.spans["material"]).tolist():
         base = material << config.weight_index_bits
+        ambient, diffuse = table.ambient[material], table.diffuse[material]
         for c in range(3):
-            out.append((kind | base | (FIELDS["ambient"] + c), int(table.ambient[material, c])))
-            out.append((kind | base | (FIELDS["diffuse"] + c), int(table.diffuse[material, c])))
-        out.append((kind | base | FIELDS["exponent"], int(table.exponent[material])))
+            alike = c and ambient[c] == ambient[0] and diffuse[c] == diffuse[0]
+            if config.channels == 3 or not alike:
+                for name, code, there in (
+                    ("ambient", ambient[c], config.environment),
+                    ("diffuse", diffuse[c], config.diffuse),
+                ):
+                    write(name, code, base, c, there or code)
+        n = table.exponent[material]
+        write("exponent", n, base, 0, config.power_function or n != config.exponent.one)
         points = table.weight[material].tolist()
         for k in range(config.weight_points - 1):
             step = points[k + 1] - points[k]
-            word = (step << config.coefficient.bits | points[k]) & word_mask
-            out.append((base | k, word))
+            if config.weight_function or k == 0 or step:
+                word = (step << config.coefficient.bits | points[k]) & word_mask
+                if config.specular or word:
+                    out.append((base | k, word))
     return out

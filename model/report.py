@@ -30,6 +30,7 @@ def make_report(
     zero_normals: int,
     error: dict,
     bound_lsb: float,
+    pruned_differ: int,
     input_error: dict | None,
     degenerate_triangles: int,
     wall_s: dict,
@@ -39,7 +40,8 @@ def make_report(
     simulation: `sim.run_frame.SimResult`; its counters give all cycles. error, input_error: from
     `metrics.error_metrics`; the second is None where there is no scene behind the spans.
     zero_normals: what the model counts. fps in frames and clock_hz in clocks a second; wall_s in
-    seconds.
+    seconds. pruned_differ: pixels in which the model of what was built differs from that of the
+    full design.
     """
     pixels, cycles = len(simulation.pixels.x), simulation.cycles
     mismatches = comparison.mismatches + simulation.extra_pixels
@@ -47,10 +49,12 @@ def make_report(
     return {
         "schema": SCHEMA,
         "scene": scene,
+        "technique": config.technique,
         "size": [frame.width, frame.height],
         "pixels": pixels,
         "spans": len(frame.spans),
         "illegal_spans": simulation.illegal_spans,
+        "unsupported": simulation.unsupported,
         "zero_normals": simulation.zero_normals,
         "cycles": cycles,
         "cycles_per_pixel": cycles / pixels if pixels else None,
@@ -68,6 +72,7 @@ def make_report(
         "compare": {
             "pixels": comparison.pixels,
             "mismatches": mismatches,
+            "pruned_model_mismatches": pruned_differ,
             "zero_normals": zero_normals,
         },
         "error": error | {"bound_lsb": bound_lsb},
@@ -92,6 +97,15 @@ def failures(report: dict) -> list[str]:
         lines.append(
             f"{compare['mismatches']} of {compare['pixels']} pixels of RTL and model differ"
         )
+    if compare["pruned_model_mismatches"]:
+        lines.append(
+            f"{compare['pruned_model_mismatches']} of {compare['pixels']} pixels of the pruned "
+            "model and the full one differ"
+        )
+    if report["unsupported"]:
+        lines.append(
+            f"{report['unsupported']} spans or register writes need what this build leaves out"
+        )
     if report["zero_normals"] != compare["zero_normals"]:
         lines.append(
             f"the RTL flags {report['zero_normals']} zero vectors, "
@@ -114,7 +128,7 @@ def table(report: dict) -> Table:
     budget, error, wall = report["budget"], report["error"], report["wall_s"]
     width, height = report["size"]
     rows = Table(
-        title=f"{escape(report['scene'])}, {width} x {height}",
+        title=f"{escape(report['scene'])}, {report['technique']}, {width} x {height}",
         show_header=False,
         title_style="bold",
     )
@@ -136,6 +150,8 @@ def table(report: dict) -> Table:
         rows.add_row(
             "illegal spans", count(report["illegal_spans"]), "the error bound does not cover them"
         )
+    if report["unsupported"]:
+        rows.add_row("unsupported", count(report["unsupported"]), "spans or register writes")
     if report["zero_normals"]:
         rows.add_row("zero vectors", count(report["zero_normals"]), "pixels without a direction")
     if report["degenerate_triangles"]:

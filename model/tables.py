@@ -1,10 +1,10 @@
 """The lookup tables of the pipeline, generated from the configuration.
 
-Every table is a set of straight lines: entry k holds the `value` at the left end of segment k and
-the `slope`, the change over the whole segment, as unsigned codes. Each line is the chord of its
-segment moved halfway towards the curve, which halves the chord's largest error and is the best
-straight line for a curve without inflection (Chebyshev's equioscillation). `tests/test_tables.py`
-recomputes every entry with mpmath.
+The default's tables are sets of straight lines: entry k holds the `value` at the left end of
+segment k and the `slope`, the change over the whole segment, as unsigned codes. Each line is the
+chord of its segment moved halfway towards the curve, which halves the chord's largest error and is
+the best straight line for a curve without inflection (Chebyshev's equioscillation). Other methods
+have parabolas or constants. `tests/test_tables.py` recomputes every entry with mpmath.
 """
 
 from __future__ import annotations
@@ -32,6 +32,49 @@ class LineTable:
         """The ROM contents, {value, slope}, int64[segments]."""
         return (self.value << self.slope_bits) | self.slope
 
+    @property
+    def word_bits(self) -> int:
+        """Width of a word."""
+        return self.value_bits + self.slope_bits
+
+
+@dataclass(frozen=True)
+class ParabolaTable:
+    """Parabolas value - t (slope - t curve), t from 0 to 1 over a segment: codes, int64[segments],
+    and their widths."""
+
+    name: str
+    value: np.ndarray
+    slope: np.ndarray
+    curve: np.ndarray
+    value_bits: int
+    slope_bits: int
+    curve_bits: int
+
+    @property
+    def words(self) -> np.ndarray:
+        """The ROM contents, {value, slope, curve}, int64[segments]."""
+        return (((self.value << self.slope_bits) | self.slope) << self.curve_bits) | self.curve
+
+    @property
+    def word_bits(self) -> int:
+        """Width of a word."""
+        return self.value_bits + self.slope_bits + self.curve_bits
+
+
+@dataclass(frozen=True)
+class ConstantTable:
+    """Constants: `value` codes, int64[segments], and their width."""
+
+    name: str
+    value: np.ndarray
+    word_bits: int
+
+    @property
+    def words(self) -> np.ndarray:
+        """The ROM contents."""
+        return self.value
+
 
 def _lines(name, left, right, midpoint, value_scale, value_bits, slope_scale, slope_bits):
     """Quantize the lines through `left` and `right`, moved by half their error at `midpoint`.
@@ -53,10 +96,7 @@ def inverse_sqrt_table(config: Config) -> LineTable:
 
     Value: u0.`root_value_bits`. Slope: 8 times finer, a segment.
     """
-    segments = 1 << config.root_index_bits
-    octave = np.repeat([1.0, 2.0], segments)
-    k = np.tile(np.arange(segments), 2)
-    a, b = octave * (1 + k / segments), octave * (1 + (k + 1) / segments)
+    a, b = _octaves(config.root_index_bits)
     left, right = a**-0.5, b**-0.5
     chord_slope = (right - left) / (b - a)
     touch = (-2 * chord_slope) ** (-2 / 3)  # where the curve is parallel to its chord
@@ -66,6 +106,49 @@ def inverse_sqrt_table(config: Config) -> LineTable:
         "inverse_sqrt", left, right, error, scale, config.root_value_bits,
         scale * 8, config.root_slope_bits,
     )  # fmt: skip
+
+
+def _octaves(index_bits: int) -> tuple[np.ndarray, np.ndarray]:
+    """Ends of 2**index_bits segments each of [1, 2) and [2, 4), float64[segments]."""
+    segments = 1 << index_bits
+    octave = np.repeat([1.0, 2.0], segments)
+    k = np.tile(np.arange(segments), 2)
+    return octave * (1 + k / segments), octave * (1 + (k + 1) / segments)
+
+
+@lru_cache
+def inverse_sqrt_parabolas(config: Config) -> ParabolaTable:
+    """1/sqrt(x), x in [1, 4): parabolas through the curve at the three Chebyshev points of each
+    segment, within a few percent of the best ones.
+
+    Value: u0.`quadratic_value_bits`. Slope and curve: 8 times finer, a segment (squared).
+    """
+    a, b = _octaves(config.quadratic_index_bits)
+    t = 0.5 + 0.5 * np.cos(np.pi * np.array([5, 3, 1]) / 6)
+    y = (a[:, None] + (b - a)[:, None] * t) ** -0.5
+    first = (y[:, 1:] - y[:, :-1]) / np.diff(t)  # divided differences
+    curve = (first[:, 1] - first[:, 0]) / (t[2] - t[0])
+    slope = first[:, 0] - curve * (t[0] + t[1])
+    value = y[:, 0] - t[0] * (slope + curve * t[0])
+    scale = 2.0**config.quadratic_value_bits
+    bits = config.quadratic_value_bits, config.quadratic_slope_bits, config.quadratic_curve_bits
+    columns = [
+        np.clip(np.floor(column * factor + 0.5).astype(np.int64), 0, (1 << width) - 1)
+        for column, factor, width in zip(
+            (value, -slope, curve), (scale, 8 * scale, 8 * scale), bits, strict=True
+        )
+    ]
+    if (-slope * 8 * scale).max() >= 1 << bits[1] or (curve * 8 * scale).max() >= 1 << bits[2]:
+        raise ValueError("table inverse_sqrt_parabolas: a slope or curve does not fit its bits")
+    return ParabolaTable("inverse_sqrt_parabolas", *columns, *bits)
+
+
+@lru_cache
+def inverse_sqrt_start(config: Config) -> ConstantTable:
+    """1/sqrt(x), x in [1, 4): the middle of its range in each segment, in `root`."""
+    a, b = _octaves(config.start_index_bits)
+    middle = config.root.quantize((a**-0.5 + b**-0.5) / 2)
+    return ConstantTable("inverse_sqrt_start", middle, config.root.bits)
 
 
 @lru_cache
@@ -107,6 +190,9 @@ def exp_table(config: Config) -> LineTable:
     )
 
 
-def tables(config: Config) -> list[LineTable]:
-    """All tables of a configuration, in the order of the data."""
-    return [inverse_sqrt_table(config), log_table(config), exp_table(config)]
+def tables(config: Config) -> list[LineTable | ParabolaTable | ConstantTable]:
+    """All tables of a configuration, those of methods that it does not use included."""
+    return [
+        inverse_sqrt_table(config), inverse_sqrt_parabolas(config), inverse_sqrt_start(config),
+        log_table(config), exp_table(config),
+    ]  # fmt: skip

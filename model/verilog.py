@@ -7,12 +7,12 @@ import dataclasses
 from .config import Config, Format
 from .registers import FIELDS
 from .spans import record_bits, span_fields
-from .tables import LineTable, tables
+from .tables import tables
 
 
-def _table(table: LineTable) -> str:
+def _table(table) -> str:
     """The words of a table as one Verilog constant, word 0 in the lowest bits."""
-    bits = table.value_bits + table.slope_bits
+    bits = table.word_bits
     packed = 0
     for k, word in enumerate(table.words.tolist()):
         packed |= word << (k * bits)

@@ -16,6 +16,9 @@ module colour_channel #(
     parameter INTENSITY_BITS       = `PHONG_INTENSITY_BITS,
     parameter INTENSITY_FRACTION   = `PHONG_INTENSITY_FRACTION,
     parameter COLOUR_BITS          = `PHONG_COLOUR_BITS,
+    parameter SPECULAR             = `PHONG_SPECULAR,
+    parameter DIFFUSE              = `PHONG_DIFFUSE,
+    parameter ENVIRONMENT          = `PHONG_ENVIRONMENT,
     parameter LATENCY              = `PHONG_COLOUR_CHANNEL_LATENCY
 ) (
     input  wire                        clk,
@@ -38,61 +41,80 @@ module colour_channel #(
   localparam WAIT = `PHONG_MULTIPLIER_LATENCY;
 
   // ---- intensity: products ----
-  wire [COEFFICIENT_BITS-1:0] diffuse;
-  wire [COEFFICIENT_BITS-1:0] ambient;
   wire [COEFFICIENT_BITS-1:0] ambient_p2;
   wire [DIFFUSE_BITS-1:0] diffuse_p2;
   wire lit_p2;
 
-  small_ram #(
-      .ADDRESS_BITS(MATERIAL_BITS),
-      .WORD_BITS(COEFFICIENT_BITS)
-  ) u_diffuse_table (
-      .clk(clk),
-      .write_enable(write_diffuse),
-      .write_address(write_address),
-      .write_word(write_word),
-      .address(material_early),
-      .word(diffuse)
-  );
+  generate
+    if (DIFFUSE) begin : gen_diffuse
+      wire [COEFFICIENT_BITS-1:0] diffuse;
 
-  small_ram #(
-      .ADDRESS_BITS(MATERIAL_BITS),
-      .WORD_BITS(COEFFICIENT_BITS)
-  ) u_ambient_table (
-      .clk(clk),
-      .write_enable(write_ambient),
-      .write_address(write_address),
-      .write_word(write_word),
-      .address(material_early),
-      .word(ambient)
-  );
+      small_ram #(
+          .ADDRESS_BITS(MATERIAL_BITS),
+          .WORD_BITS(COEFFICIENT_BITS)
+      ) u_diffuse_table (
+          .clk(clk),
+          .write_enable(write_diffuse),
+          .write_address(write_address),
+          .write_word(write_word),
+          .address(material_early),
+          .word(diffuse)
+      );
 
-  multiplier #(
-      .A_BITS  (COEFFICIENT_BITS),
-      .B_BITS  (COSINE_BITS),
-      .A_SIGNED(0),
-      .B_SIGNED(0)
-  ) u_diffuse (
-      .clk(clk),
-      .a(diffuse),
-      .b(cosine & {COSINE_BITS{lit}}),
-      .product(diffuse_p2)
-  );
+      multiplier #(
+          .A_BITS  (COEFFICIENT_BITS),
+          .B_BITS  (COSINE_BITS),
+          .A_SIGNED(0),
+          .B_SIGNED(0)
+      ) u_diffuse (
+          .clk(clk),
+          .a(diffuse),
+          .b(cosine & {COSINE_BITS{lit}}),
+          .product(diffuse_p2)
+      );
+    end else begin : gen_no_diffuse
+      assign diffuse_p2 = {DIFFUSE_BITS{1'b0}};
+    end
+
+    if (ENVIRONMENT) begin : gen_environment
+      wire [COEFFICIENT_BITS-1:0] ambient;
+
+      small_ram #(
+          .ADDRESS_BITS(MATERIAL_BITS),
+          .WORD_BITS(COEFFICIENT_BITS)
+      ) u_ambient_table (
+          .clk(clk),
+          .write_enable(write_ambient),
+          .write_address(write_address),
+          .write_word(write_word),
+          .address(material_early),
+          .word(ambient)
+      );
+
+      delay #(
+          .BITS  (COEFFICIENT_BITS),
+          .CYCLES(WAIT)
+      ) u_ambient (
+          .clk(clk),
+          .in (ambient),
+          .out(ambient_p2)
+      );
+    end else begin : gen_no_environment
+      assign ambient_p2 = {COEFFICIENT_BITS{1'b0}};
+    end
+  endgenerate
 
   delay #(
-      .BITS  (COEFFICIENT_BITS + 1),
+      .BITS  (1),
       .CYCLES(WAIT)
-  ) u_wait (
+  ) u_lit (
       .clk(clk),
-      .in ({ambient, lit}),
-      .out({ambient_p2, lit_p2})
+      .in (lit),
+      .out(lit_p2)
   );
 
   // ---- intensity: sum, clamp, cut ----
-  reg [SUM_BITS-1:0] diffuse_sum_p3;
-  reg [SPECULAR_BITS-1:0] specular_p3;
-  reg [SUM_BITS-1:0] sum_p4;
+  wire [SUM_BITS-1:0] sum_p4;
   reg [INTENSITY_BITS-1:0] intensity_p5;
 
   wire [SUM_BITS-1:0] ambient_term = {
@@ -101,11 +123,37 @@ module colour_channel #(
   wire [SUM_BITS-1:0] diffuse_term = {
     {SUM_BITS - DIFFUSE_BITS - DIFFUSE_SHIFT{1'b0}}, diffuse_p2, {DIFFUSE_SHIFT{1'b0}}
   };
+  wire [SUM_BITS-1:0] specular_term = {
+    {SUM_BITS - SPECULAR_BITS{1'b0}}, specular & {SPECULAR_BITS{lit_p2}}
+  };
+
+  generate
+    if (ENVIRONMENT && DIFFUSE && SPECULAR) begin : gen_three_terms
+      reg [SUM_BITS-1:0] diffuse_sum_p3;
+      reg [SUM_BITS-1:0] specular_p3;
+      reg [SUM_BITS-1:0] sum;
+
+      always @(posedge clk) begin
+        diffuse_sum_p3 <= ambient_term + diffuse_term;
+        specular_p3 <= specular_term;
+        sum <= diffuse_sum_p3 + specular_p3;
+      end
+
+      assign sum_p4 = sum;
+    end else begin : gen_fewer_terms
+      reg [SUM_BITS-1:0] sum;
+
+      if (SPECULAR) begin : gen_specular
+        always @(posedge clk) sum <= (ambient_term | diffuse_term) + specular_term;
+      end else begin : gen_no_specular
+        always @(posedge clk) sum <= ambient_term + diffuse_term;
+      end
+
+      assign sum_p4 = sum;
+    end
+  endgenerate
 
   always @(posedge clk) begin
-    diffuse_sum_p3 <= ambient_term + diffuse_term;
-    specular_p3 <= specular & {SPECULAR_BITS{lit_p2}};
-    sum_p4 <= diffuse_sum_p3 + {{SUM_BITS - SPECULAR_BITS{1'b0}}, specular_p3};
     intensity_p5 <= |sum_p4[SUM_BITS-1:SPECULAR_FRACTION]
         ? {{INTENSITY_BITS - INTENSITY_FRACTION - 1{1'b0}}, 1'b1, {INTENSITY_FRACTION{1'b0}}}
         : sum_p4[SPECULAR_FRACTION-INTENSITY_FRACTION+:INTENSITY_BITS];

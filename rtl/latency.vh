@@ -3,6 +3,7 @@
 // other way to read it; every module's testbench asserts it.
 `ifndef PHONG_LATENCY_VH
 `define PHONG_LATENCY_VH
+`include "phong_config.vh"
 
 `define PHONG_MULTIPLIER_LATENCY 2         // operand register, product register
 `define PHONG_NARROW_MULTIPLIER_LATENCY 4  // 8 rows, three levels of an adder tree
@@ -19,6 +20,38 @@
   + `PHONG_MULTIPLIER_LATENCY        /* refine: slope * offset */ \
   + 1                                /* refine: subtract */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
+
+// The other methods for 1/sqrt.
+`define PHONG_INVERSE_SQRT_QUADRATIC_LATENCY \
+  ( 1                                /* lookup: align, address */ \
+  + `PHONG_ROM_LATENCY \
+  + `PHONG_MULTIPLIER_LATENCY        /* bend: curve * offset */ \
+  + 1                                /* bend: subtract */ \
+  + `PHONG_MULTIPLIER_LATENCY        /* refine: slope * offset */ \
+  + 1                                /* refine: subtract */ \
+  + `PHONG_ROUND_SATURATE_LATENCY )
+
+`define PHONG_NEWTON_STEP_LATENCY \
+  ( `PHONG_MULTIPLIER_LATENCY        /* error: square */ \
+  + `PHONG_ROUND_SATURATE_LATENCY \
+  + `PHONG_MULTIPLIER_LATENCY        /* error: times x */ \
+  + 1                                /* error: from 1 */ \
+  + `PHONG_MULTIPLIER_LATENCY        /* better: times y */ \
+  + 1                                /* better: add */ \
+  + `PHONG_ROUND_SATURATE_LATENCY )
+
+`define PHONG_INVERSE_SQRT_START_LATENCY \
+  ( 1                                /* align, address; magic: align */ \
+  + `PHONG_ROM_LATENCY )             /* magic: subtract, shift */
+
+`define PHONG_INVERSE_SQRT_ITERATED_LATENCY \
+  ( `PHONG_INVERSE_SQRT_START_LATENCY \
+  + `PHONG_ROOT_NEWTON_STEPS * `PHONG_NEWTON_STEP_LATENCY )
+
+`define PHONG_INVERSE_SQRT_METHOD_LATENCY \
+  ( `PHONG_ROOT_METHOD == `PHONG_ROOT_METHOD_LINES ? `PHONG_INVERSE_SQRT_LATENCY : \
+    `PHONG_ROOT_METHOD == `PHONG_ROOT_METHOD_QUADRATIC ? `PHONG_INVERSE_SQRT_QUADRATIC_LATENCY : \
+    `PHONG_INVERSE_SQRT_ITERATED_LATENCY )
 
 `define PHONG_ALIGN_LATENCY \
   ( 1                                /* significant bits of three components */ \
@@ -37,10 +70,19 @@
   + `PHONG_MULTIPLIER_LATENCY        /* squares */ \
   + 2                                /* sum of squares */ \
   + 1                                /* operand of the root */ \
-  + `PHONG_INVERSE_SQRT_LATENCY \
+  + `PHONG_INVERSE_SQRT_METHOD_LATENCY \
   + `PHONG_MULTIPLIER_LATENCY        /* scale */ \
   + 1                                /* scale: double */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
+
+`define PHONG_UNNORMALIZED_LATENCY \
+  ( 1                                /* |Zn| */ \
+  + `PHONG_ROUND_SATURATE_LATENCY )
+
+// From the interpolators to the shading unit.
+`define PHONG_NORMAL_LATENCY \
+  ( `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_NONE ? `PHONG_UNNORMALIZED_LATENCY : \
+    `PHONG_NORMALIZER_LATENCY )
 
 `define PHONG_REFLECTION_LATENCY \
   ( `PHONG_MULTIPLIER_LATENCY        /* across: products with h */ \
@@ -51,13 +93,17 @@
   + `PHONG_ROUND_SATURATE_LATENCY )
 
 `define PHONG_LOG_LATENCY \
-  ( `PHONG_LEADING_ZEROS_LATENCY     /* leading ones */ \
-  + `PHONG_LEFT_SHIFTER_LATENCY \
+  ( (`PHONG_LOG_OCTAVES ? `PHONG_LEADING_ZEROS_LATENCY + `PHONG_LEFT_SHIFTER_LATENCY : 0) \
+                                     /* leading ones */ \
   + `PHONG_ROM_LATENCY               /* log lookup */ \
   + `PHONG_MULTIPLIER_LATENCY        /* log refine: slope * offset */ \
   + 1                                /* log refine: add */ \
   + `PHONG_LEADING_ZEROS_LATENCY     /* log normalize */ \
   + `PHONG_LEFT_SHIFTER_LATENCY )
+
+`define PHONG_SPECULAR_COSINE_LATENCY \
+  ( 1                                /* 1 - versine */ \
+  + `PHONG_ROUND_SATURATE_LATENCY )
 
 `define PHONG_SPECULAR_POWER_LATENCY \
   ( `PHONG_LOG_LATENCY \
@@ -68,7 +114,7 @@
   + 1                                /* exp refine: subtract */ \
   + 2                                /* exp shift: twice */ \
   + `PHONG_ROUND_SATURATE_LATENCY    /* exp shift: round */ \
-  + 1 )                              /* bypass */
+  + `PHONG_POWER_BYPASS )            /* bypass */
 
 `define PHONG_SPECULAR_WEIGHT_LATENCY \
   ( `PHONG_RAM_LATENCY               /* lookup */ \
@@ -78,16 +124,31 @@
 
 `define PHONG_COLOUR_CHANNEL_LATENCY \
   ( `PHONG_MULTIPLIER_LATENCY        /* intensity: products */ \
-  + 2                                /* intensity: ambient + diffuse, + specular */ \
+  + (`PHONG_ENVIRONMENT & `PHONG_DIFFUSE & `PHONG_SPECULAR ? 2 : 1) \
+                                     /* intensity: ambient + diffuse, + specular */ \
   + 1                                /* intensity: clamp, cut */ \
   + 2 )                              /* code: times 255, round */
 
+`define PHONG_POWER_LATENCY \
+  ( `PHONG_POWER_FUNCTION ? `PHONG_SPECULAR_POWER_LATENCY : `PHONG_SPECULAR_COSINE_LATENCY )
+
+// From the unit normal to the products of eq. (3).
+`define PHONG_SPECULAR_LATENCY \
+  ( `PHONG_SPECULAR ? `PHONG_REFLECTION_LATENCY + `PHONG_POWER_LATENCY \
+                    : `PHONG_SMALL_RAM_LATENCY )
+
 `define PHONG_SHADING_UNIT_LATENCY \
-  ( `PHONG_REFLECTION_LATENCY \
-  + `PHONG_SPECULAR_POWER_LATENCY \
+  ( `PHONG_SPECULAR_LATENCY \
   + `PHONG_COLOUR_CHANNEL_LATENCY )  /* W * power runs beside its products */
 
+`define PHONG_INTENSITY_CODE_LATENCY \
+  ( 1                                /* clamp, cut */ \
+  + 2 )                              /* code: times 255, round */
+
 // From a pixel that leaves the interpolators to its colour.
-`define PHONG_PIXEL_LATENCY (`PHONG_NORMALIZER_LATENCY + `PHONG_SHADING_UNIT_LATENCY)
+`define PHONG_PIXEL_LATENCY \
+  ( `PHONG_TECHNIQUE == `PHONG_TECHNIQUE_PHONG \
+  ? `PHONG_NORMAL_LATENCY + `PHONG_SHADING_UNIT_LATENCY \
+  : `PHONG_INTENSITY_CODE_LATENCY )  /* Gouraud, flat */
 
 `endif

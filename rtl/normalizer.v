@@ -19,6 +19,8 @@ module normalizer #(
     parameter UNIT_FRACTION     = `PHONG_UNIT_FRACTION,
     parameter COSINE_BITS       = `PHONG_COSINE_BITS,
     parameter COSINE_FRACTION   = `PHONG_COSINE_FRACTION,
+    parameter SPECULAR          = `PHONG_SPECULAR,   // 0: nobody asks for the unit normal itself
+    parameter TWO_SIDED         = `PHONG_TWO_SIDED,  // 0: where Zn < 0, cosine is of no use
     parameter LATENCY           = `PHONG_NORMALIZER_LATENCY
 ) (
     input  wire                   clk,
@@ -111,7 +113,7 @@ module normalizer #(
   wire [PRODUCT_BITS:0] product[X:Z];
   wire [PRODUCT_BITS-1:0] scaled_z;
 
-  localparam ROOT_WAIT = `PHONG_MULTIPLIER_LATENCY + 2 + 1 + `PHONG_INVERSE_SQRT_LATENCY;
+  localparam ROOT_WAIT = `PHONG_MULTIPLIER_LATENCY + 2 + 1 + `PHONG_INVERSE_SQRT_METHOD_LATENCY;
 
   wire [3*NORMAL_BITS-1:0] xyz = {z, y, x};
 
@@ -121,9 +123,6 @@ module normalizer #(
       wire [  NORMAL_BITS-1:0] normal_p3;
       wire [  NORMAL_BITS-1:0] aligned_p5;
       wire [MANTISSA_BITS-1:0] mantissa_p7;
-      wire [MANTISSA_BITS-1:0] mantissa;
-      wire [ PRODUCT_BITS-1:0] scaled;
-      reg  [   PRODUCT_BITS:0] doubled;
 
       delay #(
           .BITS  (NORMAL_BITS),
@@ -164,44 +163,56 @@ module normalizer #(
           .product(square_p9[c])
       );
 
-      delay #(
-          .BITS  (MANTISSA_BITS),
-          .CYCLES(ROOT_WAIT)
-      ) u_wait (
-          .clk(clk),
-          .in (mantissa_p7),
-          .out(mantissa)
-      );
+      if (SPECULAR || c == Z) begin : gen_scale
+        wire [ MANTISSA_BITS-1:0] mantissa;
+        wire [  PRODUCT_BITS-1:0] scaled;
+        reg  [    PRODUCT_BITS:0] doubled;
 
-      multiplier #(
-          .A_BITS  (MANTISSA_BITS),
-          .B_BITS  (ROOT_BITS),
-          .B_SIGNED(0)
-      ) u_scale (
-          .clk(clk),
-          .a(mantissa),
-          .b(root),
-          .product(scaled)
-      );
+        delay #(
+            .BITS  (MANTISSA_BITS),
+            .CYCLES(ROOT_WAIT)
+        ) u_wait (
+            .clk(clk),
+            .in (mantissa_p7),
+            .out(mantissa)
+        );
 
-      always @(posedge clk) begin
-        doubled <= below_one ? {scaled, 1'b0} : {scaled[PRODUCT_BITS-1], scaled};
+        multiplier #(
+            .A_BITS  (MANTISSA_BITS),
+            .B_BITS  (ROOT_BITS),
+            .B_SIGNED(0)
+        ) u_scale (
+            .clk(clk),
+            .a(mantissa),
+            .b(root),
+            .product(scaled)
+        );
+
+        always @(posedge clk) begin
+          doubled <= below_one ? {scaled, 1'b0} : {scaled[PRODUCT_BITS-1], scaled};
+        end
+
+        assign product[c] = doubled;
+        if (c == Z) begin : gen_scaled
+          assign scaled_z = scaled;
+        end
+      end else begin : gen_no_scale
+        assign product[c] = {PRODUCT_BITS + 1{1'b0}};
       end
 
-      assign product[c] = doubled;
-      if (c == Z) begin : gen_scaled
-        assign scaled_z = scaled;
+      if (SPECULAR) begin : gen_unit
+        round_saturate #(
+            .IN_BITS (PRODUCT_BITS + 1),
+            .DROP    (PRODUCT_FRACTION - UNIT_FRACTION),
+            .OUT_BITS(UNIT_BITS)
+        ) u_unit (
+            .clk(clk),
+            .in (product[c]),
+            .out(unit[c])
+        );
+      end else begin : gen_no_unit
+        assign unit[c] = {UNIT_BITS{1'b0}};
       end
-
-      round_saturate #(
-          .IN_BITS (PRODUCT_BITS + 1),
-          .DROP    (PRODUCT_FRACTION - UNIT_FRACTION),
-          .OUT_BITS(UNIT_BITS)
-      ) u_unit (
-          .clk(clk),
-          .in (doubled),
-          .out(unit[c])
-      );
     end
   endgenerate
 
@@ -234,7 +245,7 @@ module normalizer #(
 
   wire unused = &{1'b0, sum_p11[OPERAND_DROP-3:0]};
 
-  inverse_sqrt u_inverse_sqrt (
+  inverse_sqrt_method u_inverse_sqrt (
       .clk(clk),
       .operand(operand_p12),
       .root(root)
@@ -242,7 +253,7 @@ module normalizer #(
 
   delay #(
       .BITS  (1),
-      .CYCLES(`PHONG_INVERSE_SQRT_LATENCY + `PHONG_MULTIPLIER_LATENCY)
+      .CYCLES(`PHONG_INVERSE_SQRT_METHOD_LATENCY + `PHONG_MULTIPLIER_LATENCY)
   ) u_below_one (
       .clk(clk),
       .in (below_one_p12),
@@ -255,7 +266,7 @@ module normalizer #(
   localparam COSINE_DROP = PRODUCT_FRACTION - COSINE_FRACTION;
   localparam MAGNITUDE_BITS = PRODUCT_BITS + 1 - COSINE_DROP;
 
-  wire negative = product[Z][PRODUCT_BITS];
+  wire negative = (TWO_SIDED != 0) & product[Z][PRODUCT_BITS];
   wire half = product[Z][COSINE_DROP-1];
   reg below_half_zero;  // all bits below the half
 

@@ -9,6 +9,7 @@
 module pixel_fifo #(
     parameter COORDINATE_BITS = `PHONG_COORDINATE_BITS,
     parameter COLOUR_BITS     = `PHONG_COLOUR_BITS,
+    parameter CHANNELS        = `PHONG_CHANNELS,
     parameter LATENCY         = `PHONG_PIXEL_LATENCY
 ) (
     input wire clk,
@@ -92,12 +93,17 @@ module pixel_fifo #(
   // ---- banks of slots, in logic cells: block RAM would be nearly empty ----
   // Each reads into a register of its own; choosing between them comes after the registers.
   localparam PLACE_BITS = 1 + 2 * COORDINATE_BITS;
-  localparam PIXEL_BITS = PLACE_BITS + 3 * COLOUR_BITS;
+  localparam PIXEL_BITS = PLACE_BITS + CHANNELS * COLOUR_BITS;
 
+  wire [3*COLOUR_BITS-1:0] rgb = {red, green, blue};  // one channel: all of them blue
+  wire unused = &{1'b0, rgb};
   wire [PIXEL_BITS-1:0] chosen[0:BANKS];
 
   assign chosen[0] = {PIXEL_BITS{1'b0}};
-  assign {out_last, out_data} = chosen[BANKS];
+  assign {out_last, out_data} = {
+    chosen[BANKS][PIXEL_BITS-1-:PLACE_BITS],
+    {3 / CHANNELS{chosen[BANKS][CHANNELS*COLOUR_BITS-1:0]}}
+  };
 
   genvar b;
   generate
@@ -107,7 +113,7 @@ module pixel_fifo #(
       (* ram_style = "distributed" *)
       reg [PLACE_BITS-1:0] places[0:BANK-1];
       (* ram_style = "distributed" *)
-      reg [3*COLOUR_BITS-1:0] colours[0:BANK-1];
+      reg [CHANNELS*COLOUR_BITS-1:0] colours[0:BANK-1];
       reg [PIXEL_BITS-1:0] pixel;
       reg here;  // the pixel at the output is from this bank
 
@@ -116,7 +122,7 @@ module pixel_fifo #(
           places[place_slot[3:0]] <= {pixel_last, pixel_y, pixel_x};
         end
         if (colour_valid & (colour_slot[SLOT_BITS-1:4] == FIRST[SLOT_BITS-1:4])) begin
-          colours[colour_slot[3:0]] <= {red, green, blue};
+          colours[colour_slot[3:0]] <= rgb[CHANNELS*COLOUR_BITS-1:0];
         end
         if (pop) begin
           pixel <= {places[read_slot[3:0]], colours[read_slot[3:0]]};

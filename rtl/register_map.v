@@ -8,7 +8,19 @@ module register_map #(
     parameter MATERIAL_BITS    = `PHONG_MATERIAL_BITS,
     parameter INDEX_BITS       = `PHONG_WEIGHT_INDEX_BITS,
     parameter COEFFICIENT_BITS = `PHONG_COEFFICIENT_BITS,
-    parameter HALF_BITS        = `PHONG_HALF_VECTOR_BITS
+    parameter HALF_BITS        = `PHONG_HALF_VECTOR_BITS,
+    parameter EXPONENT_BITS     = `PHONG_EXPONENT_BITS,
+    parameter EXPONENT_FRACTION = `PHONG_EXPONENT_FRACTION,
+    parameter POWER_BITS        = `PHONG_POWER_BITS,
+    parameter SPECULAR         = `PHONG_SPECULAR,
+    parameter POWER_FUNCTION   = `PHONG_POWER_FUNCTION,
+    parameter POWER_BYPASS     = `PHONG_POWER_BYPASS,
+    parameter LOG_OCTAVES      = `PHONG_LOG_OCTAVES,
+    parameter WEIGHT_FUNCTION  = `PHONG_WEIGHT_FUNCTION,
+    parameter DIFFUSE          = `PHONG_DIFFUSE,
+    parameter ENVIRONMENT      = `PHONG_ENVIRONMENT,
+    parameter CHANNELS         = `PHONG_CHANNELS,
+    parameter TWO_SIDED        = `PHONG_TWO_SIDED
 ) (
     input wire clk,
 
@@ -21,7 +33,7 @@ module register_map #(
     // registers
     output reg [HALF_BITS-1:0] half_x,  // s0.17
     output reg [HALF_BITS-1:0] half_z,
-    output reg                 two_sided,
+    output wire                two_sided,
 
     // material table
     output reg                                write_weight,
@@ -29,7 +41,9 @@ module register_map #(
     output reg [                         2:0] write_ambient,  // blue, green, red
     output reg [                         2:0] write_diffuse,
     output reg [MATERIAL_BITS+INDEX_BITS-1:0] table_address,
-    output reg [        2*COEFFICIENT_BITS:0] table_word
+    output reg [        2*COEFFICIENT_BITS:0] table_word,
+
+    output wire unsupported  // for one clock: a word asks for what this build leaves out
 );
 
   localparam [INDEX_BITS-1:0] AMBIENT_RED = `PHONG_FIELD_AMBIENT;
@@ -42,19 +56,17 @@ module register_map #(
   wire is_weight = ~write_address[MATERIAL_BITS+INDEX_BITS];
   wire [INDEX_BITS-1:0] field = write_address[INDEX_BITS-1:0];
   wire write_field = write_enable & ~is_weight;
-
   reg write_half_x, write_half_z, write_control;
 
   integer c;
   always @(posedge clk) begin
     write_half_x <= write_field & (field == HALF_X);
     write_half_z <= write_field & (field == HALF_Z);
-    write_control <= write_field & (field == CONTROL);
     if (write_half_x) half_x <= table_word[HALF_BITS-1:0];
     if (write_half_z) half_z <= table_word[HALF_BITS-1:0];
-    if (write_control) two_sided <= table_word[0];
     write_weight <= write_enable & is_weight;
     write_exponent <= write_field & (field == EXPONENT);
+    write_control <= write_field & (field == CONTROL);
     for (c = 0; c < 3; c = c + 1) begin
       write_ambient[c] <= write_field & (field == AMBIENT_RED + c[INDEX_BITS-1:0]);
       write_diffuse[c] <= write_field & (field == DIFFUSE_RED + c[INDEX_BITS-1:0]);
@@ -62,6 +74,50 @@ module register_map #(
     table_address <= write_address[MATERIAL_BITS+INDEX_BITS-1:0];
     table_word <= write_word;
   end
+
+  // ---- features ----
+  generate
+    if (TWO_SIDED) begin : gen_two_sided
+      reg turn;
+      always @(posedge clk) if (write_control) turn <= table_word[0];
+      assign two_sided = turn;
+    end else begin : gen_one_sided
+      assign two_sided = 1'b0;
+    end
+  endgenerate
+
+  // ---- words that ask for what is left out ----
+  // 2^-n is 0 in the word of cos(s)^n from this n on.
+  localparam [EXPONENT_BITS-1:0] ONE = 1 << EXPONENT_FRACTION;
+  localparam [EXPONENT_BITS-1:0] VANISHES = (POWER_BITS + 1) << EXPONENT_FRACTION;
+
+  wire other = table_word[COEFFICIENT_BITS-1:0] != 0;
+  wire [EXPONENT_BITS-1:0] n = table_word[EXPONENT_BITS-1:0];
+  wire [4:0] missing;
+
+  assign missing[0] = (SPECULAR == 0) & write_weight & (table_word != 0);
+  assign missing[1] = (WEIGHT_FUNCTION == 0) & write_weight
+      & (table_word[2*COEFFICIENT_BITS:COEFFICIENT_BITS] != 0);
+  assign missing[2] = (SPECULAR != 0) & write_exponent
+      & ((POWER_FUNCTION == 0) & (n != ONE)
+         | (POWER_FUNCTION != 0) & (POWER_BYPASS == 0) & (n == ONE)
+         | (LOG_OCTAVES == 0) & (n != ONE) & (n < VANISHES));
+  assign missing[3] = (ENVIRONMENT == 0) & |write_ambient & other
+      | (DIFFUSE == 0) & |write_diffuse & other
+      | (CHANNELS < 3) & |{write_ambient[2:1], write_diffuse[2:1]};
+  assign missing[4] = (TWO_SIDED == 0) & write_control & table_word[0];
+
+  generate
+    if (SPECULAR && POWER_FUNCTION && POWER_BYPASS && LOG_OCTAVES && WEIGHT_FUNCTION && DIFFUSE
+        && ENVIRONMENT && CHANNELS == 3 && TWO_SIDED) begin : gen_everything
+      assign unsupported = 1'b0;
+      wire unused = &{1'b0, missing};
+    end else begin : gen_check
+      reg found;
+      always @(posedge clk) found <= |missing;
+      assign unsupported = found;
+    end
+  endgenerate
 
 endmodule
 

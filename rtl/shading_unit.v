@@ -12,12 +12,18 @@ module shading_unit #(
     parameter HALF_BITS        = `PHONG_HALF_VECTOR_BITS,
     parameter MATERIAL_BITS    = `PHONG_MATERIAL_BITS,
     parameter COEFFICIENT_BITS = `PHONG_COEFFICIENT_BITS,
+    parameter COEFFICIENT_FRACTION = `PHONG_COEFFICIENT_FRACTION,
     parameter INDEX_BITS       = `PHONG_WEIGHT_INDEX_BITS,
     parameter EXPONENT_BITS    = `PHONG_EXPONENT_BITS,
     parameter VERSINE_BITS     = `PHONG_VERSINE_BITS,
     parameter POWER_BITS       = `PHONG_POWER_BITS,
     parameter WEIGHT_BITS      = `PHONG_WEIGHT_BITS,
+    parameter WEIGHT_FRACTION  = `PHONG_WEIGHT_FRACTION,
     parameter COLOUR_BITS      = `PHONG_COLOUR_BITS,
+    parameter CHANNELS         = `PHONG_CHANNELS,
+    parameter SPECULAR         = `PHONG_SPECULAR,
+    parameter POWER_FUNCTION   = `PHONG_POWER_FUNCTION,
+    parameter WEIGHT_FUNCTION  = `PHONG_WEIGHT_FUNCTION,
     parameter LATENCY          = `PHONG_SHADING_UNIT_LATENCY
 ) (
     input wire clk,
@@ -46,64 +52,33 @@ module shading_unit #(
 );
 
   // Clocks from the input to where a thing is needed.
-  localparam POWER_AT = `PHONG_REFLECTION_LATENCY + `PHONG_SPECULAR_POWER_LATENCY;
+  localparam POWER_AT = `PHONG_SPECULAR_LATENCY;
   localparam EXPONENT_AT = `PHONG_REFLECTION_LATENCY + `PHONG_LOG_LATENCY;
   localparam WEIGHT_AT = POWER_AT - `PHONG_SPECULAR_WEIGHT_LATENCY;
 
+  // Clocks from the input to where the material is looked up, in this order.
+  localparam COLOUR_FROM = POWER_AT - `PHONG_SMALL_RAM_LATENCY;
+  localparam WEIGHT_FROM = !SPECULAR ? 0 : WEIGHT_FUNCTION ? WEIGHT_AT : COLOUR_FROM;
+  localparam EXPONENT_FROM =
+      SPECULAR && POWER_FUNCTION ? EXPONENT_AT - `PHONG_SMALL_RAM_LATENCY : 0;
+
   wire [MATERIAL_BITS-1:0] write_material = write_address[INDEX_BITS+:MATERIAL_BITS];
-
-  // ---- cos(s)^n ----
-  wire [VERSINE_BITS-1:0] versine;
   wire [MATERIAL_BITS-1:0] material_exponent;
-  wire [EXPONENT_BITS-1:0] exponent;
-  wire [POWER_BITS-1:0] power;
-
-  reflection u_reflection (
-      .clk(clk),
-      .half_x(half_x),
-      .half_z(half_z),
-      .unit_x(unit_x),
-      .unit_y(unit_y),
-      .unit_z(unit_z),
-      .versine(versine)
-  );
+  wire [MATERIAL_BITS-1:0] material_weight;
+  wire [MATERIAL_BITS-1:0] material_early;
 
   delay #(
       .BITS  (MATERIAL_BITS),
-      .CYCLES(EXPONENT_AT - `PHONG_SMALL_RAM_LATENCY)
+      .CYCLES(EXPONENT_FROM)
   ) u_material_exponent (
       .clk(clk),
       .in (material),
       .out(material_exponent)
   );
 
-  small_ram #(
-      .ADDRESS_BITS(MATERIAL_BITS),
-      .WORD_BITS(EXPONENT_BITS)
-  ) u_exponent_table (
-      .clk(clk),
-      .write_enable(write_exponent),
-      .write_address(write_material),
-      .write_word(write_word[EXPONENT_BITS-1:0]),
-      .address(material_exponent),
-      .word(exponent)
-  );
-
-  specular_power u_specular_power (
-      .clk(clk),
-      .versine(versine),
-      .exponent(exponent),
-      .power(power)
-  );
-
-  // ---- W(i) ----
-  wire [MATERIAL_BITS-1:0] material_weight;
-  wire [COSINE_BITS-1:0] cosine_weight;
-  wire [WEIGHT_BITS-1:0] weight;
-
   delay #(
       .BITS  (MATERIAL_BITS),
-      .CYCLES(WEIGHT_AT - EXPONENT_AT + `PHONG_SMALL_RAM_LATENCY)
+      .CYCLES(WEIGHT_FROM - EXPONENT_FROM)
   ) u_material_weight (
       .clk(clk),
       .in (material_exponent),
@@ -111,56 +86,33 @@ module shading_unit #(
   );
 
   delay #(
-      .BITS  (COSINE_BITS),
-      .CYCLES(WEIGHT_AT)
-  ) u_cosine_weight (
-      .clk(clk),
-      .in (cosine),
-      .out(cosine_weight)
-  );
-
-  specular_weight u_specular_weight (
-      .clk(clk),
-      .write_enable(write_weight),
-      .write_address(write_address),
-      .write_word(write_word),
-      .material(material_weight),
-      .cosine(cosine_weight),
-      .weight(weight)
-  );
-
-  // ---- W(i) cos(s)^n ----
-  wire [WEIGHT_BITS+POWER_BITS-1:0] specular;
-
-  multiplier #(
-      .A_BITS  (WEIGHT_BITS),
-      .B_BITS  (POWER_BITS),
-      .A_SIGNED(0),
-      .B_SIGNED(0)
-  ) u_specular (
-      .clk(clk),
-      .a(weight),
-      .b(power),
-      .product(specular)
-  );
-
-  // ---- red, green, blue ----
-  wire [MATERIAL_BITS-1:0] material_early;
-  wire [COSINE_BITS-1:0] cosine_power;
-  wire lit_power;
-
-  delay #(
       .BITS  (MATERIAL_BITS),
-      .CYCLES(`PHONG_SPECULAR_WEIGHT_LATENCY - `PHONG_SMALL_RAM_LATENCY)
+      .CYCLES(COLOUR_FROM - WEIGHT_FROM)
   ) u_material_early (
       .clk(clk),
       .in (material_weight),
       .out(material_early)
   );
 
+  // cos(i) comes to the weight first, then to the products.
+  localparam COSINE_WEIGHT_AT = SPECULAR && WEIGHT_FUNCTION ? WEIGHT_AT : 0;
+
+  wire [COSINE_BITS-1:0] cosine_weight;
+  wire [COSINE_BITS-1:0] cosine_power;
+  wire lit_power;
+
   delay #(
       .BITS  (COSINE_BITS),
-      .CYCLES(`PHONG_SPECULAR_WEIGHT_LATENCY)
+      .CYCLES(COSINE_WEIGHT_AT)
+  ) u_cosine_weight (
+      .clk(clk),
+      .in (cosine),
+      .out(cosine_weight)
+  );
+
+  delay #(
+      .BITS  (COSINE_BITS),
+      .CYCLES(POWER_AT - COSINE_WEIGHT_AT)
   ) u_cosine_power (
       .clk(clk),
       .in (cosine_weight),
@@ -176,11 +128,104 @@ module shading_unit #(
       .out(lit_power)
   );
 
-  wire [3*COLOUR_BITS-1:0] colour;
+  // ---- W(i) cos(s)^n ----
+  wire [WEIGHT_BITS+POWER_BITS-1:0] specular;
+
+  generate
+    if (SPECULAR) begin : gen_specular
+      wire [VERSINE_BITS-1:0] versine;
+      wire [POWER_BITS-1:0] power;
+      wire [WEIGHT_BITS-1:0] weight;
+
+      reflection u_reflection (
+          .clk(clk),
+          .half_x(half_x),
+          .half_z(half_z),
+          .unit_x(unit_x),
+          .unit_y(unit_y),
+          .unit_z(unit_z),
+          .versine(versine)
+      );
+
+      if (POWER_FUNCTION) begin : gen_power
+        wire [EXPONENT_BITS-1:0] exponent;
+
+        small_ram #(
+            .ADDRESS_BITS(MATERIAL_BITS),
+            .WORD_BITS(EXPONENT_BITS)
+        ) u_exponent_table (
+            .clk(clk),
+            .write_enable(write_exponent),
+            .write_address(write_material),
+            .write_word(write_word[EXPONENT_BITS-1:0]),
+            .address(material_exponent),
+            .word(exponent)
+        );
+
+        specular_power u_specular_power (
+            .clk(clk),
+            .versine(versine),
+            .exponent(exponent),
+            .power(power)
+        );
+      end else begin : gen_cosine
+        specular_cosine u_specular_cosine (
+            .clk(clk),
+            .versine(versine),
+            .cosine(power)
+        );
+      end
+
+      if (WEIGHT_FUNCTION) begin : gen_weight
+        specular_weight u_specular_weight (
+            .clk(clk),
+            .write_enable(write_weight),
+            .write_address(write_address),
+            .write_word(write_word),
+            .material(material_weight),
+            .cosine(cosine_weight),
+            .weight(weight)
+        );
+      end else begin : gen_constant_weight  // interval 0 stands for all
+        wire [COEFFICIENT_BITS-1:0] left;
+
+        small_ram #(
+            .ADDRESS_BITS(MATERIAL_BITS),
+            .WORD_BITS(COEFFICIENT_BITS)
+        ) u_weight_table (
+            .clk(clk),
+            .write_enable(write_weight),
+            .write_address(write_material),
+            .write_word(write_word[COEFFICIENT_BITS-1:0]),
+            .address(material_weight),
+            .word(left)
+        );
+
+        assign weight = {left, {WEIGHT_FRACTION - COEFFICIENT_FRACTION{1'b0}}};
+      end
+
+      multiplier #(
+          .A_BITS  (WEIGHT_BITS),
+          .B_BITS  (POWER_BITS),
+          .A_SIGNED(0),
+          .B_SIGNED(0)
+      ) u_specular (
+          .clk(clk),
+          .a(weight),
+          .b(power),
+          .product(specular)
+      );
+    end else begin : gen_no_specular
+      assign specular = {WEIGHT_BITS + POWER_BITS{1'b0}};
+    end
+  endgenerate
+
+  // ---- red, green, blue ----
+  wire [CHANNELS*COLOUR_BITS-1:0] colour;
 
   genvar c;
   generate
-    for (c = 0; c < 3; c = c + 1) begin : gen_channel
+    for (c = 0; c < CHANNELS; c = c + 1) begin : gen_channel
       colour_channel u_channel (
           .clk(clk),
           .write_ambient(write_ambient[c]),
@@ -196,7 +241,7 @@ module shading_unit #(
     end
   endgenerate
 
-  assign {blue, green, red} = colour;
+  assign {blue, green, red} = {3 / CHANNELS{colour}};
 
 endmodule
 

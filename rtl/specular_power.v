@@ -1,6 +1,6 @@
 // specular_power: cos(s)^n = 2^(-n * -log2(1 - v)), v = 1 - cos(s).
 // Both the logarithm and the exponential are tables of straight lines; n may be fractional.
-// n = 1 bypasses them: cos(s) itself, rounded.
+// n = 1 bypasses them: cos(s) itself, rounded (specular_cosine).
 // One result a clock; latency below.
 `default_nettype none
 `include "phong_config.vh"
@@ -8,7 +8,6 @@
 
 module specular_power #(
     parameter VERSINE_BITS      = `PHONG_VERSINE_BITS,
-    parameter VERSINE_FRACTION  = `PHONG_VERSINE_FRACTION,
     parameter LOG_INDEX_BITS    = `PHONG_LOG_INDEX_BITS,
     parameter LOG_VALUE_BITS    = `PHONG_LOG_VALUE_BITS,     // all of them fraction
     parameter LOG_SLOPE_BITS    = `PHONG_LOG_SLOPE_BITS,
@@ -21,6 +20,8 @@ module specular_power #(
     parameter EXP_VALUE_BITS    = `PHONG_EXP_VALUE_BITS,     // all of them fraction
     parameter EXP_SLOPE_BITS    = `PHONG_EXP_SLOPE_BITS,
     parameter POWER_BITS        = `PHONG_POWER_BITS,         // all of them fraction
+    parameter OCTAVES           = `PHONG_LOG_OCTAVES,        // 0: cos(s)^n is 0 if cos(s) <= 1/2
+    parameter BYPASS            = `PHONG_POWER_BYPASS,       // 0: n is never 1
     parameter LATENCY           = `PHONG_SPECULAR_POWER_LATENCY
 ) (
     input  wire                     clk,
@@ -32,39 +33,50 @@ module specular_power #(
   localparam EXPONENT_LATENCY = `PHONG_LOG_LATENCY;
 
   // ---- leading_ones: cos(s) = 2^-e (1 - t), 0 <= t < 1/2 ----
-  localparam E_BITS = $clog2(VERSINE_BITS + 1);
+  // Without octaves e is 0 or 1, and where it is 1 the power vanishes, whatever t is.
+  localparam E_BITS = OCTAVES ? $clog2(VERSINE_BITS + 1) : 1;
+  localparam ONES_LATENCY = OCTAVES ? `PHONG_LEADING_ZEROS_LATENCY : 0;
+  localparam T_LATENCY = OCTAVES ? `PHONG_LEFT_SHIFTER_LATENCY : 0;
 
   wire [E_BITS-1:0] e_p2;
-  wire [VERSINE_BITS-1:0] versine_p2;
   wire [VERSINE_BITS-1:0] t_p4;
 
-  leading_zeros #(
-      .BITS(VERSINE_BITS),
-      .COUNT_BITS(E_BITS)
-  ) u_leading_ones (
-      .clk  (clk),
-      .word (~versine),
-      .count(e_p2)
-  );
+  generate
+    if (OCTAVES) begin : gen_octaves
+      wire [VERSINE_BITS-1:0] versine_p2;
 
-  delay #(
-      .BITS  (VERSINE_BITS),
-      .CYCLES(`PHONG_LEADING_ZEROS_LATENCY)
-  ) u_versine (
-      .clk(clk),
-      .in (versine),
-      .out(versine_p2)
-  );
+      leading_zeros #(
+          .BITS(VERSINE_BITS),
+          .COUNT_BITS(E_BITS)
+      ) u_leading_ones (
+          .clk  (clk),
+          .word (~versine),
+          .count(e_p2)
+      );
 
-  left_shifter #(
-      .BITS(VERSINE_BITS),
-      .COUNT_BITS(E_BITS)
-  ) u_t (
-      .clk(clk),
-      .word(versine_p2),
-      .count(e_p2),
-      .shifted(t_p4)
-  );
+      delay #(
+          .BITS  (VERSINE_BITS),
+          .CYCLES(ONES_LATENCY)
+      ) u_versine (
+          .clk(clk),
+          .in (versine),
+          .out(versine_p2)
+      );
+
+      left_shifter #(
+          .BITS(VERSINE_BITS),
+          .COUNT_BITS(E_BITS)
+      ) u_t (
+          .clk(clk),
+          .word(versine_p2),
+          .count(e_p2),
+          .shifted(t_p4)
+      );
+    end else begin : gen_octave
+      assign e_p2 = versine[VERSINE_BITS-1];
+      assign t_p4 = {1'b0, versine[VERSINE_BITS-2:0]};
+    end
+  endgenerate
 
   // ---- log_lookup ----
   localparam LOG_OFFSET_BITS = VERSINE_BITS - 1 - LOG_INDEX_BITS;
@@ -125,7 +137,7 @@ module specular_power #(
 
   delay #(
       .BITS  (E_BITS),
-      .CYCLES(`PHONG_LEFT_SHIFTER_LATENCY + `PHONG_ROM_LATENCY + `PHONG_MULTIPLIER_LATENCY)
+      .CYCLES(T_LATENCY + `PHONG_ROM_LATENCY + `PHONG_MULTIPLIER_LATENCY)
   ) u_e (
       .clk(clk),
       .in (e_p2),
@@ -252,7 +264,7 @@ module specular_power #(
   wire [WHOLE_BITS-1:0] whole_p25;
   reg [EXP_VALUE_BITS-1:0] line_p25;
 
-  narrow_multiplier #(
+  slope_multiplier #(
       .A_BITS(EXP_SLOPE_BITS),
       .B_BITS(EXP_OFFSET_BITS)
   ) u_exp_slope (
@@ -311,47 +323,45 @@ module specular_power #(
   );
 
   // ---- bypass: n = 1 ----
-  wire [POWER_BITS-1:0] cosine_p29;
-  wire bypass_p29;
-  reg [POWER_BITS-1:0] result_p30;
-  reg [VERSINE_BITS:0] cosine_p1;
-  wire [POWER_BITS-1:0] cosine_p3;
+  generate
+    if (BYPASS) begin : gen_bypass
+      wire [POWER_BITS-1:0] cosine_p3;
+      wire [POWER_BITS-1:0] cosine_p29;
+      wire bypass_p29;
+      reg [POWER_BITS-1:0] result_p30;
 
-  always @(posedge clk) cosine_p1 <= {1'b1, {VERSINE_FRACTION{1'b0}}} - {1'b0, versine};
+      specular_cosine u_cosine (
+          .clk(clk),
+          .versine(versine),
+          .cosine(cosine_p3)
+      );
 
-  round_saturate #(
-      .IN_BITS  (VERSINE_BITS + 1),
-      .DROP     (VERSINE_FRACTION - POWER_BITS),
-      .OUT_BITS (POWER_BITS),
-      .IS_SIGNED(0)
-  ) u_cosine (
-      .clk(clk),
-      .in (cosine_p1),
-      .out(cosine_p3)
-  );
+      delay #(
+          .BITS  (POWER_BITS),
+          .CYCLES(LATENCY - `PHONG_SPECULAR_COSINE_LATENCY - 1)
+      ) u_cosine_wait (
+          .clk(clk),
+          .in (cosine_p3),
+          .out(cosine_p29)
+      );
 
-  delay #(
-      .BITS  (POWER_BITS),
-      .CYCLES(LATENCY - 1 - `PHONG_ROUND_SATURATE_LATENCY - 1)
-  ) u_cosine_wait (
-      .clk(clk),
-      .in (cosine_p3),
-      .out(cosine_p29)
-  );
+      delay #(
+          .BITS  (1),
+          .CYCLES(LATENCY - EXPONENT_LATENCY - 1)
+      ) u_bypass (
+          .clk(clk),
+          .in (exponent == {{EXPONENT_BITS - EXPONENT_FRACTION - 1{1'b0}}, 1'b1,
+                            {EXPONENT_FRACTION{1'b0}}}),
+          .out(bypass_p29)
+      );
 
-  delay #(
-      .BITS  (1),
-      .CYCLES(LATENCY - EXPONENT_LATENCY - 1)
-  ) u_bypass (
-      .clk(clk),
-      .in (exponent == {{EXPONENT_BITS - EXPONENT_FRACTION - 1{1'b0}}, 1'b1,
-                        {EXPONENT_FRACTION{1'b0}}}),
-      .out(bypass_p29)
-  );
+      always @(posedge clk) result_p30 <= bypass_p29 ? cosine_p29 : power_p29;
 
-  always @(posedge clk) result_p30 <= bypass_p29 ? cosine_p29 : power_p29;
-
-  assign power = result_p30;
+      assign power = result_p30;
+    end else begin : gen_no_bypass
+      assign power = power_p29;
+    end
+  endgenerate
 
 endmodule
 

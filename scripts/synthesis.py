@@ -351,21 +351,24 @@ def pack(folder: Path, grade: int, seed: int) -> dict:
 # -- all of it ------------------------------------------------------------------------------------
 
 
-def clock_limit(resources: dict[str, int], grade: int) -> tuple[float, str]:
-    """The clock in MHz that the blocks in use allow whatever nextpnr says, and which block."""
+def clock_limit(resources: dict[str, int], grade: int) -> tuple[float | None, str]:
+    """The clock in MHz that the blocks in use allow whatever nextpnr says, and which block.
+
+    None where there is no such block.
+    """
     limits = GRADES[grade]
     if resources["ebr"]:
         return limits.block_ram, "block RAM"
     if resources["dsp"]:
         return limits.multiplier, "multiplier"
-    return float("inf"), "none"
+    return None, "none"
 
 
 def summary(config: Config, grade: int, synthesis: dict, routed: list[dict]) -> dict:
     """The report: what is used, how fast it is, and what that gives in pixels and frames."""
     limit, block = clock_limit(synthesis["resources"], grade)
     reported = [seed["fmax_mhz"] for seed in routed]
-    clamped = [min(mhz, limit) for mhz in reported]
+    clamped = [min(mhz, limit or mhz) for mhz in reported]
     median, best = statistics.median(clamped), max(clamped)
     harness_luts = synthesis["harness"]["lut"]
     return {

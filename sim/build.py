@@ -140,6 +140,8 @@ class Bench(Verilator):
             ["-Wno-lint", "-Wno-style", "-Wno-fatal", "--output-split-cfuncs", "200"]
             if netlist
             else ["-Wall"]
+            if config == DEFAULT
+            else ["-Wall", "-Wno-UNUSED"]  # what a configuration leaves out need not be used
         )
         self._cxx = CXX_FLAGS.replace("-O2", "-O1") if netlist else CXX_FLAGS
         super().__init__()

@@ -36,6 +36,7 @@ module frame_bench #(
     output reg [31:0] stall_cycles,   // of `cycles`, after the first pixel: no pixel was taken
     output reg [31:0] pixel_count,
     output reg [31:0] illegal_spans,
+    output reg [31:0] unsupported,    // from the first register write for the job on
     output reg [31:0] zero_normals,   // pixels whose normal was the zero vector
     output reg [31:0] extra_pixels    // pixels after the last one
 );
@@ -48,7 +49,7 @@ module frame_bench #(
   wire m_valid, m_last;
   wire [PIXEL_BITS-1:0] m_data;
   reg m_ready;
-  wire illegal_span, zero_normal;
+  wire illegal_span, zero_normal, unsupported_now;
 
   phong_pipeline dut (
       .clk(clk),
@@ -65,7 +66,8 @@ module frame_bench #(
       .m_axis_tdata(m_data),
       .m_axis_tlast(m_last),
       .illegal_span(illegal_span),
-      .zero_normal(zero_normal)
+      .zero_normal(zero_normal),
+      .unsupported(unsupported_now)
   );
 
   reg [255:0] name;
@@ -74,9 +76,11 @@ module frame_bench #(
   reg [31:0] spans_read, clocks, waited;
   reg accepted;  // a span of this job was accepted
   reg [31:0] random;
+  reg over;  // a job is; the next write is for another
 
   initial begin
     running = 0;
+    over = 1;
     s_valid = 0;
     m_ready = 0;
   end
@@ -90,6 +94,8 @@ module frame_bench #(
   wire [31:0] pixel_count_next = pixel_count + {31'b0, take};
 
   always @(posedge clk) begin
+    over <= running | (over & ~write_enable);
+    unsupported <= over & write_enable ? 0 : unsupported + {31'b0, unsupported_now};
     random <= next_random(random);
     m_ready <= running & (stall_chance == 0 | random[7:0] >= stall_chance);
 

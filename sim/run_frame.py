@@ -33,7 +33,8 @@ class SimResult:
     latency_cycles: to the first pixel offered. stall_cycles: of `cycles`, those after the first
     pixel in which none was taken. illegal_spans, zero_normals: how often the pipeline flagged them.
     extra_pixels: pixels after the last.
-    build_s, simulate_s: seconds.
+    build_s, simulate_s: seconds. unsupported: spans and register writes that need what the build
+    leaves out.
     """
 
     pixels: Pixels
@@ -46,6 +47,7 @@ class SimResult:
     build_s: float
     simulate_s: float
     zero_normals: int = 0
+    unsupported: int = 0
 
 
 @dataclass
@@ -136,6 +138,7 @@ def simulate_jobs(
                     read_pixels(folder / f"{k}.pixels", config), bool(c["complete"]), c["cycles"],
                     c["latency"], c["stall_cycles"], c["illegal_spans"],
                     c.get("extra_pixels", 0), build_s, c["seconds"], c["zero_normals"],
+                    c["unsupported"],
                 )
             )  # fmt: skip
         return results

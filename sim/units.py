@@ -68,6 +68,13 @@ _X = _sum(_LOG, MUL, 3)
 _LINE = _sum(_X, ROM, L.format("NARROW_MULTIPLIER"), 1)
 
 MODULES = {
+    "intensity_code": Module(
+        ("value",),
+        (
+            Stage("intensity_code.clamp", ("intensity_p1",), "1"),
+            Stage("intensity_code.code", ("colour",), L.format("INTENSITY_CODE")),
+        ),
+    ),
     "inverse_sqrt": Module(
         ("operand",),
         (
@@ -75,6 +82,44 @@ MODULES = {
             Stage("inverse_sqrt.refine", ("line_p6",), _sum(1, ROM, MUL, 1)),
             Stage("inverse_sqrt.round", ("root",), L.format("INVERSE_SQRT")),
         ),
+    ),
+    "inverse_sqrt_quadratic": Module(
+        ("operand",),
+        (
+            Stage(
+                "inverse_sqrt_quadratic.lookup", ("value_p3", "slope_p3", "curve_p3", "offset_p3"),
+                _sum(1, ROM),
+            ),
+            Stage("inverse_sqrt_quadratic.bend", ("slope_p6",), _sum(1, ROM, MUL, 1)),
+            Stage("inverse_sqrt_quadratic.refine", ("line_p9",), _sum(1, ROM, MUL, 1, MUL, 1)),
+            Stage("inverse_sqrt_quadratic.round", ("root",), L.format("INVERSE_SQRT_QUADRATIC")),
+        ),
+    ),
+    "newton_step": Module(
+        ("x", "y"),
+        (
+            Stage("newton_step.square", ("square_p4",), _sum(MUL, ROUND)),
+            Stage("newton_step.error", ("+error_p7",), _sum(MUL, ROUND, MUL, 1)),
+            Stage("newton_step.better", ("better",), L.format("NEWTON_STEP")),
+        ),
+    ),
+    "inverse_sqrt_iterated": Module(
+        ("operand",),
+        (
+            Stage("inverse_sqrt_iterated.start", ("start_p3",), L.format("INVERSE_SQRT_START")),
+            Stage("inverse_sqrt_iterated.steps", ("root",), "dut.LATENCY"),
+        ),
+    ),
+    "unnormalized": Module(
+        ("x", "y", "z"),
+        (
+            Stage(
+                "unnormalized.round", ("+unit_x", "+unit_y", "+unit_z", "cosine"),
+                L.format("UNNORMALIZED"),
+            ),
+            Stage("unnormalized.lit", ("lit",), L.format("UNNORMALIZED")),
+        ),
+        held=(("two_sided", 1),),
     ),
     "normalizer": Module(
         ("x", "y", "z"),
@@ -87,7 +132,7 @@ MODULES = {
                 _sum(L.format("ALIGN"), MUL, 3),
             ),
             Stage(
-                "normalizer.scale", _components("doubled"),
+                "normalizer.scale", _components("gen_scale.doubled"),
                 _sum(L.format("ALIGN"), MUL, 3, L.format("INVERSE_SQRT"), MUL, 1),
             ),
             Stage(
@@ -99,7 +144,10 @@ MODULES = {
         ),
         held=(("reset", 1), ("two_sided", 1), ("valid", 1)),
         children=(
-            Child("u_inverse_sqrt", "inverse_sqrt", _sum(L.format("ALIGN"), MUL, 3)),
+            Child(
+                "u_inverse_sqrt.gen_lines.u_inverse_sqrt", "inverse_sqrt",
+                _sum(L.format("ALIGN"), MUL, 3),
+            ),
         ),
     ),
     "reflection": Module(
@@ -131,6 +179,9 @@ MODULES = {
         ),
         late={"exponent": _LOG},
     ),
+    "specular_cosine": Module(
+        ("versine",), (Stage("specular_cosine", ("cosine",), L.format("SPECULAR_COSINE")),)
+    ),
     "specular_weight": Module(
         ("cosine", "material"),
         (
@@ -157,11 +208,14 @@ MODULES = {
             ("write_diffuse", 3), *_TABLE_PORTS,
         ),
         children=(
-            Child("u_reflection", "reflection", "0"),
-            Child("u_specular_power", "specular_power", L.format("REFLECTION")),
+            Child("gen_specular.u_reflection", "reflection", "0"),
             Child(
-                "u_specular_weight", "specular_weight",
-                _sum(L.format("REFLECTION"), L.format("SPECULAR_POWER"),
+                "gen_specular.gen_power.u_specular_power", "specular_power",
+                L.format("REFLECTION"),
+            ),
+            Child(
+                "gen_specular.gen_weight.u_specular_weight", "specular_weight",
+                _sum(L.format("REFLECTION"), L.format("POWER"),
                      "-" + L.format("SPECULAR_WEIGHT")),
             ),
         ),

@@ -66,5 +66,5 @@ def test_a_broken_design_fails_and_is_located(tmp_path):
     result = simulate_jobs([Job(frame)], C, Bench("frame_bench", C, rtl=rtl))[0]
     comparison = metrics.compare(twin.render(frame), result.pixels)
     assert comparison.mismatches > 100
-    said = locate(frame, comparison.first.index, rtl)
+    said = locate(frame, comparison.first.index, rtl=rtl)
     assert "stage reflection.versine" in said and "expected" in said and "got" in said

@@ -53,6 +53,7 @@ def test_errors_by_hand():
     found = error_metrics(codes, exact)
     assert found["max_lsb"] == 1.0
     assert found["p999_lsb"] == 1.0
+    assert found["mean_lsb"] == pytest.approx((0.25 + 0.5 + 1) / 6)
     assert found["rms_lsb"] == pytest.approx(np.sqrt((0.0625 + 0.25 + 1) / 6))
     assert found["correctly_rounded"] == 5 / 6  # 29.5 rounds to 30
     assert found["psnr_db"] == pytest.approx(10 * np.log10(255**2 * 6 / 1.3125))
@@ -71,7 +72,8 @@ def test_without_error_and_without_pixels():
     perfect = error_metrics(np.full((2, 3), 7), np.full((2, 3), 7.0))
     empty = error_metrics(np.zeros((0, 3), np.uint8), np.zeros((0, 3)))
     expected = {
-        "max_lsb": 0.0, "rms_lsb": 0.0, "p999_lsb": 0.0, "correctly_rounded": 1.0, "psnr_db": None,
+        "max_lsb": 0.0, "mean_lsb": 0.0, "rms_lsb": 0.0, "p999_lsb": 0.0,
+        "correctly_rounded": 1.0, "psnr_db": None,
     }  # fmt: skip
     assert perfect == empty == expected
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from model import error_budget, registers, spans
 from model.config import DEFAULT as C
+from model.config import TECHNIQUES
 from sim.build import ROOT, RTL
 from sim.formal.proofs import PROOFS
 from sim.latency import latencies
@@ -22,6 +23,9 @@ def test_latencies():
         assert f"{block} ({of[block]})" in README, block
     assert f"colour_channel ×3 ({of['colour_channel']})" in README
     assert f"the first comes {of['pixel'] + 3} clocks after its span" in README
+    for older in ("gouraud", "flat"):
+        pixel = latencies(TECHNIQUES[older])["pixel"]
+        assert f"the first pixel {pixel + 3} clocks after its span" in " ".join(README.split())
 
 
 def test_bounds():
@@ -55,7 +59,8 @@ def test_the_multipliers_are_counted():
         for child, name in re.findall(r"^\s*(\w+)(?:\s*#\(.*?\))?\s+(u_\w+) \(", text, re.M | re.S):
             times = 1
             for block, copies in per_instance.get(module, {}).items():
-                inside = text[text.index("begin : " + block) : text.index("endgenerate")]
+                start = text.index("begin : " + block)
+                inside = text[start : text.index("endgenerate", start)]
                 times = copies if f" {name} (" in inside else times
             total += times * (1 if child == "multiplier" else count(child))
         return total

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import fixed
 from ..config import Config
-from .inverse_sqrt import inverse_sqrt
+from .inverse_sqrt_method import inverse_sqrt_method
 
 
 def leading_zeros(normal, config: Config):
@@ -45,12 +45,21 @@ def scale(mantissa, root, below_one):
 
 
 def round_unit(product, config: Config):
-    """Stage 7: the unit normal in `unit`, and |Zn| in `cosine`, each rounded once."""
+    """Stage 7: the unit normal in `unit`, and |Zn| in `cosine`, each rounded once.
+
+    Without `specular` there is no unit normal: zeros. Without `two_sided` the cosine of a Zn below
+    0 is of no use and the largest code.
+    """
     fraction = config.mantissa.fraction + config.root.fraction
-    unit = fixed.saturate(fixed.round_shift(product, fraction - config.unit.fraction), config.unit)
+    z = product[2]
     cosine = fixed.saturate(
-        fixed.round_shift(np.abs(product[2]), fraction - config.cosine.fraction), config.cosine
+        fixed.round_shift(np.abs(z), fraction - config.cosine.fraction), config.cosine
     )
+    if not config.two_sided:
+        cosine = np.where(z < 0, config.cosine.max, cosine)
+    if not config.specular:
+        return np.zeros_like(product), cosine
+    unit = fixed.saturate(fixed.round_shift(product, fraction - config.unit.fraction), config.unit)
     return unit, cosine
 
 
@@ -74,7 +83,7 @@ def normalizer(normal, two_sided: bool, config: Config, trace: dict | None = Non
     mantissa = align(normal, shift, config)
     square = sum_of_squares(mantissa)
     operand, below_one = root_operand(square, config)
-    root = inverse_sqrt(operand, config, trace)
+    root = inverse_sqrt_method(operand, config, trace)
     product = scale(mantissa, root, below_one)
     unit, cosine = round_unit(product, config)
     if trace is not None:

@@ -9,10 +9,15 @@ import numpy as np
 
 from ..config import DEFAULT, Config
 from ..frame import Frame
+from .flat_unit import flat_unit
+from .gouraud_unit import gouraud_unit
 from .normal_interpolator import normal_interpolator
 from .normalizer import normalizer, zero
 from .shading_unit import shading_unit
 from .span_walker import span_walker
+from .unnormalized import unnormalized
+
+NORMAL_METHODS = {"normalize": normalizer, "none": unnormalized}
 
 #: Pixels worked on at a time: the temporaries of one block fit the cache.
 BLOCK = 1 << 14
@@ -39,8 +44,18 @@ def interpolate(spans, span, k, config: Config):
 
 def shade(normal, material, frame: Frame, config: Config = DEFAULT, trace: dict | None = None):
     """Codes int64[3, n] of interpolated normals (int64[3, n] in `normal`) and their materials."""
-    unit, cosine, lit = normalizer(normal, frame.two_sided, config, trace)
+    unit, cosine, lit = NORMAL_METHODS[config.normal_method](normal, frame.two_sided, config, trace)
     return shading_unit(unit, cosine, lit, material, frame, config, trace)
+
+
+def colours(frame: Frame, span, k, config: Config):
+    """Codes int64[3, n] of pixel `k` of the spans number `span` (int64[n]), by any technique."""
+    if config.technique == "gouraud":
+        return gouraud_unit(frame.spans, span, k, config)
+    if config.technique == "flat":
+        return flat_unit(frame.spans, span, config)
+    normal, _ = interpolate(frame.spans, span, k, config)
+    return shade(normal, frame.spans["material"][span], frame, config)
 
 
 def render(
@@ -54,15 +69,19 @@ def render(
     for first in range(0, total, BLOCK):
         block = slice(first, min(first + BLOCK, total))
         span, k, x[block], y[block], last[block] = span_walker(spans, first, block.stop, config)
-        normal, _ = interpolate(spans, span, k, config)
-        rgb[block] = shade(normal, spans["material"][span], frame, config).T
+        rgb[block] = colours(frame, span, k, config).T
         if progress:
             progress(block.stop / total)
     return Pixels(x, y, rgb, last)
 
 
 def zero_normals(frame: Frame, config: Config = DEFAULT) -> int:
-    """How many pixels of `frame` have the zero vector for a normal (the RTL flags each)."""
+    """How many pixels of `frame` have the zero vector for a normal (the RTL flags each).
+
+    None where nothing is normalized.
+    """
+    if config.technique != "phong" or config.normal_method == "none":
+        return 0
     spans, count = frame.spans, 0
     total = int(np.maximum(spans["length"], 1).sum())
     for first in range(0, total, BLOCK):

@@ -10,19 +10,23 @@ import numpy as np
 from .. import fixed
 from ..config import Config
 from .reflection import reflection
+from .specular_cosine import specular_cosine
 from .specular_power import specular_power
-from .specular_weight import specular_weight
+from .specular_weight import constant_weight, specular_weight
 
 
 def intensity(ambient, diffuse, cosine, weight, power, lit, config: Config):
-    """Stage: S per channel, int64[3, n], all products whole; clamped to 1, cut to `intensity`."""
+    """Stage: S per channel, int64[channels, n], all products whole; clamped to 1, cut to
+    `intensity`."""
     coefficient, cos, power_f = config.coefficient, config.cosine, config.power
     fraction = config.weight.fraction + power_f.fraction
     lit = lit.astype(np.int64)
-    s = diffuse * (cosine * lit)
+    s = diffuse * (cosine * lit) if config.diffuse else np.zeros_like(ambient)
     s <<= fraction - coefficient.fraction - cos.fraction
-    s += ambient << (fraction - coefficient.fraction)
-    s += weight * power * lit
+    if config.environment:
+        s += ambient << (fraction - coefficient.fraction)
+    if config.specular:
+        s += weight * power * lit
     return np.minimum(s, 1 << fraction) >> (fraction - config.intensity.fraction)
 
 
@@ -39,16 +43,25 @@ def shading_unit(unit, cosine, lit, material, frame, config: Config, trace: dict
     frame: model.frame.Frame (registers and material table).
     """
     table = frame.materials
-    v = reflection(unit, frame.half_vector, config, trace)
-    power = specular_power(v, table.exponent[material], config, trace)
-    weight = specular_weight(cosine, material, table.weight, config, trace)
+    power = weight = np.zeros_like(cosine)
+    if config.specular:
+        v = reflection(unit, frame.half_vector, config, trace)
+        if config.power_function:
+            power = specular_power(v, table.exponent[material], config, trace)
+        else:
+            power = specular_cosine(v, config, trace)
+        if config.weight_function:
+            weight = specular_weight(cosine, material, table.weight, config, trace)
+        else:
+            weight = constant_weight(table.weight[material, 0], config)
+    ambient, diffuse = table.ambient, table.diffuse
     s = intensity(
-        np.stack([np.take(column, material) for column in table.ambient.T]),
-        np.stack([np.take(column, material) for column in table.diffuse.T]),
+        np.stack([np.take(column, material) for column in ambient.T[: config.channels]]),
+        np.stack([np.take(column, material) for column in diffuse.T[: config.channels]]),
         cosine, weight, power, lit, config,
     )  # fmt: skip
     colour = code(s, config)
     if trace is not None:
         trace["shading_unit.intensity"] = tuple(s)
         trace["shading_unit.code"] = tuple(colour)
-    return colour
+    return np.broadcast_to(colour, (3, colour.shape[1]))

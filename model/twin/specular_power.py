@@ -7,10 +7,17 @@ import numpy as np
 from .. import fixed
 from ..config import Config
 from ..tables import exp_table, log_table
+from .specular_cosine import specular_cosine
 
 
 def leading_ones(v, config: Config):
-    """Stage 1: cos(s) = 2**-e (1 - t), 0 <= t < 1/2: e is the number of leading ones of v."""
+    """Stage 1: cos(s) = 2**-e (1 - t), 0 <= t < 1/2: e is the number of leading ones of v.
+
+    Without `log_octaves` e is at most 1, and where it is 1 the power vanishes whatever t is.
+    """
+    if not config.log_octaves:
+        top = config.versine.bits - 1
+        return v >> top, v & ((1 << top) - 1)
     ones = config.versine.max - v
     e = config.versine.bits - fixed.bit_length(ones)
     return e, (v << e) & config.versine.max
@@ -32,8 +39,10 @@ def log_refine(e, value, slope, offset, config: Config):
 
 
 def log_bits(config: Config) -> int:
-    """Width of -log2(cos s): up to `versine.bits` + 1, with the fraction of `log_value`."""
-    return config.log_value.fraction + config.versine.bits.bit_length()
+    """Width of -log2(cos s): up to `versine.bits` + 1 (without `log_octaves` below 2), with the
+    fraction of `log_value`."""
+    most = config.versine.bits if config.log_octaves else 1
+    return config.log_value.fraction + most.bit_length()
 
 
 def log_normalize(g, config: Config):
@@ -72,10 +81,10 @@ def exp_shift(line, whole, config: Config):
 
 
 def bypass(power, v, n, config: Config):
-    """Stage 9: for n = 1 cos(s) itself, rounded, in place of the power."""
-    drop = config.versine.fraction - config.power.fraction
-    cosine = fixed.saturate(fixed.round_shift(config.versine.one - v, drop), config.power)
-    return np.where(n == config.exponent.one, cosine, power)
+    """Stage 9: for n = 1 cos(s) itself in place of the power."""
+    if not config.power_bypass:
+        return power
+    return np.where(n == config.exponent.one, specular_cosine(v, config), power)
 
 
 def specular_power(v, n, config: Config, trace: dict | None = None):

@@ -32,3 +32,8 @@ def specular_weight(cosine, material, weight, config: Config, trace: dict | None
         trace["specular_weight.lookup"] = (left, step, offset)
         trace["specular_weight.interpolate"] = (w,)
     return w
+
+
+def constant_weight(left, config: Config):
+    """W in `weight` where it does not depend on i: its left point (`coefficient`), exact."""
+    return left << (config.weight.fraction - config.coefficient.fraction)

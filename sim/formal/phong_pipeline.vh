@@ -63,12 +63,12 @@
     if (f_takes) begin
       f_left <= f_pixels;
       f_bad <= span_length == 0 || {2'b00, span_x} + span_length > 1 << COORDINATE_BITS;
-      f_x <= $signed(start_x);
-      f_y <= $signed(start_y);
-      f_z <= $signed(start_z);
-      f_step_x <= step_x;
-      f_step_y <= step_y;
-      f_step_z <= step_z;
+      f_x <= $signed(gen_phong.start_x);
+      f_y <= $signed(gen_phong.start_y);
+      f_z <= $signed(gen_phong.start_z);
+      f_step_x <= gen_phong.step_x;
+      f_step_y <= gen_phong.step_y;
+      f_step_z <= gen_phong.step_z;
     end else if (pixel_valid) begin
       f_left <= f_left - 1'b1;
       f_x <= f_x + f_step_x;

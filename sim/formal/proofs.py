@@ -80,8 +80,8 @@ _INTERPOLATOR_TWINS = (
 )  # fmt: skip
 _PIPELINE = "spans in, their pixels out, in order, after a constant time, at full rate; flags"
 _PIPELINE_TWINS = (
-    Twin("phong_pipeline", ".overflow(overflow_x | overflow_y | overflow_z),",
-         ".overflow(overflow_x | overflow_y),", "a_illegal"),
+    Twin("phong_pipeline", "overflow = overflow_x | overflow_y | overflow_z;",
+         "overflow = overflow_x | overflow_y;", "a_illegal"),
     Twin("normalizer", "& ~sign_p3 &", "&", "a_zero"),
     Twin("phong_pipeline", ".out_ready(m_axis_tready),", ".out_ready(1'b1),", "a_stable"),
     Twin("phong_pipeline", ".span_y(span_y),", ".span_y(span_x),", "a_order_and_place"),
@@ -124,8 +124,8 @@ PROOFS = (
         "stall", "no logic from the output's ready to the input's ready", "phong_pipeline",
         "structure", size="the whole pipeline",
         script=_no_path("m_axis_tready", "s_axis_tready"),
-        twins=(Twin("phong_pipeline", "overflow_z),\n      .credit(credit)",
-                    "overflow_z),\n      .credit(credit & m_axis_tready)", "no_path"),),
+        twins=(Twin("phong_pipeline", ".overflow(overflow),\n      .credit(credit)",
+                    ".overflow(overflow),\n      .credit(credit & m_axis_tready)", "no_path"),),
     ),
     Proof(
         "wiring", _PIPELINE, "phong_pipeline", "bmc", 10, "latency 3, 10 clocks from reset",

@@ -12,10 +12,12 @@ import numpy as np
 
 from model.config import DEFAULT as C
 from model.frame import SPAN_DTYPE, Frame, MaterialTable
+from model.twin.intensity_code import intensity_code
 from model.twin.inverse_sqrt import inverse_sqrt
 from model.twin.normalizer import normalizer
 from model.twin.reflection import reflection
 from model.twin.shading_unit import shading_unit
+from model.twin.specular_cosine import specular_cosine
 from model.twin.specular_power import specular_power
 from model.twin.specular_weight import specular_weight
 from sim.unit_tb import UnitTB
@@ -173,6 +175,23 @@ async def specular_power_latency(dut):
     await tb.check_latency([half, 2 * one], [half, one], "specular_power.bypass")
 
 
+@_only("specular_cosine")
+async def specular_cosine_exhaustive(dut):
+    """Every versine."""
+    tb = UnitTB(dut, MODULE)
+    for first in range(0, C.versine.max + 1, 1 << 20):
+        v = np.arange(first, first + (1 << 20))
+        trace = {}
+        specular_cosine(v, C, trace)
+        await tb.check([v], trace)
+
+
+@_only("specular_cosine")
+async def specular_cosine_latency(dut):
+    """One operand at a time shows at the stated clock only."""
+    await UnitTB(dut, MODULE).check_latency([0], [C.versine.one // 2], "specular_cosine")
+
+
 # -- specular_weight, shading_unit: with a material table -----------------------------------------
 
 
@@ -223,3 +242,27 @@ async def shading_unit_random(dut):
     trace = {}
     shading_unit(unit, cosine, lit, material, frame, C, trace)
     await tb.check([*unit, cosine, lit, material], trace, NOTE)
+
+
+# -- intensity_code -------------------------------------------------------------------------------
+
+
+@_only("intensity_code")
+async def intensity_code_random(dut):
+    """Every code's borders, the ends of [0, 1] and of the word, and random words."""
+    tb = UnitTB(dut, MODULE)
+    rng = np.random.default_rng(SEED)
+    white = (1 << C.colour_bits) - 1
+    borders = np.round((np.arange(white + 1) + 0.5) / white * C.normal.one).astype(np.int64)
+    near = (borders[:, None] + np.arange(-200, 201)).reshape(-1)
+    value = np.concatenate([near, _edges(C.normal, rng, RANDOM)])
+    trace = {}
+    intensity_code(value, C, trace)
+    assert set(trace["intensity_code.code"][0]) == set(range(white + 1))
+    await tb.check([value], trace, NOTE)
+
+
+@_only("intensity_code")
+async def intensity_code_latency(dut):
+    """One value at a time shows at the stated clock only."""
+    await UnitTB(dut, MODULE).check_latency([0], [C.normal.one], "intensity_code.code")

@@ -1,0 +1,41 @@
+// inverse_sqrt_method: 1/sqrt(x), x in [1, 4), by the method that the configuration names.
+`default_nettype none
+`include "phong_config.vh"
+`include "latency.vh"
+
+module inverse_sqrt_method #(
+    parameter METHOD       = `PHONG_ROOT_METHOD,
+    parameter OPERAND_BITS = `PHONG_ROOT_OPERAND_BITS,
+    parameter ROOT_BITS    = `PHONG_ROOT_BITS,
+    parameter LATENCY      = `PHONG_INVERSE_SQRT_METHOD_LATENCY
+) (
+    input  wire                    clk,
+    input  wire [OPERAND_BITS-1:0] operand,  // u2.20, x
+    output wire [   ROOT_BITS-1:0] root      // u0.18, 1/sqrt(x)
+);
+
+  generate
+    if (METHOD == `PHONG_ROOT_METHOD_LINES) begin : gen_lines
+      inverse_sqrt u_inverse_sqrt (
+          .clk(clk),
+          .operand(operand),
+          .root(root)
+      );
+    end else if (METHOD == `PHONG_ROOT_METHOD_QUADRATIC) begin : gen_quadratic
+      inverse_sqrt_quadratic u_inverse_sqrt (
+          .clk(clk),
+          .operand(operand),
+          .root(root)
+      );
+    end else begin : gen_iterated  // table or magic
+      inverse_sqrt_iterated u_inverse_sqrt (
+          .clk(clk),
+          .operand(operand),
+          .root(root)
+      );
+    end
+  endgenerate
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,146 @@
+// newton_step: one step of Newton's iteration for 1/sqrt(x) from an estimate y,
+//   e = 1 - x y^2, y' = y + y e / 2, whose relative error is 3/2 of the square of y's.
+// Three products; only the small e is rounded hard, so that nothing of y is lost.
+// One result a clock; latency below.
+`default_nettype none
+`include "phong_config.vh"
+`include "latency.vh"
+
+module newton_step #(
+    parameter BITS    = `PHONG_ROOT_BITS,
+    parameter LATENCY = `PHONG_NEWTON_STEP_LATENCY
+) (
+    input  wire            clk,
+    input  wire [BITS-1:0] x,        // u2.16, in [1, 4)
+    input  wire [BITS-1:0] y,        // u0.18, within 11 % of 1/sqrt(x)
+    output wire [BITS-1:0] x_out,    // beside the result
+    output wire [BITS-1:0] better    // u0.18
+);
+
+  localparam PRODUCT_BITS = 2 * BITS;
+  localparam ERROR_FRACTION = BITS + 1;  // |e| is below 1/4
+  localparam ERROR_DROP = PRODUCT_BITS - 2 - ERROR_FRACTION;
+  localparam SQUARE_AT = `PHONG_MULTIPLIER_LATENCY + `PHONG_ROUND_SATURATE_LATENCY;
+  localparam ERROR_AT = SQUARE_AT + `PHONG_MULTIPLIER_LATENCY + 1;
+
+  // ---- error: 1 - x y^2 ----
+  wire [PRODUCT_BITS-1:0] square_p2;
+  wire [BITS-1:0] square_p4;
+  wire [BITS-1:0] x_p4;
+  wire [PRODUCT_BITS-1:0] near_one_p6;
+  reg [BITS-1:0] error_p7;
+
+  multiplier #(
+      .A_BITS  (BITS),
+      .B_BITS  (BITS),
+      .A_SIGNED(0),
+      .B_SIGNED(0)
+  ) u_square (
+      .clk(clk),
+      .a(y),
+      .b(y),
+      .product(square_p2)
+  );
+
+  round_saturate #(
+      .IN_BITS  (PRODUCT_BITS),
+      .DROP     (BITS),
+      .OUT_BITS (BITS),
+      .IS_SIGNED(0)
+  ) u_square_round (
+      .clk(clk),
+      .in (square_p2),
+      .out(square_p4)
+  );
+
+  delay #(
+      .BITS  (BITS),
+      .CYCLES(SQUARE_AT)
+  ) u_x (
+      .clk(clk),
+      .in (x),
+      .out(x_p4)
+  );
+
+  multiplier #(
+      .A_BITS  (BITS),
+      .B_BITS  (BITS),
+      .A_SIGNED(0),
+      .B_SIGNED(0)
+  ) u_near_one (
+      .clk(clk),
+      .a(x_p4),
+      .b(square_p4),
+      .product(near_one_p6)
+  );
+
+  // 1 is a one above the kept bits, so 1 - p is -p; -p cut is ~p, a unit of e too small at most.
+  always @(posedge clk) error_p7 <= ~near_one_p6[ERROR_DROP+:BITS];
+
+  wire unused = &{1'b0, near_one_p6[PRODUCT_BITS-1:ERROR_DROP+BITS], near_one_p6[ERROR_DROP-1:0]};
+
+  // ---- better: y + y e / 2 ----
+  localparam BETTER_FRACTION = BITS + ERROR_FRACTION + 1;
+
+  wire [BITS-1:0] y_p7;
+  wire [BITS-1:0] y_p9;
+  wire [PRODUCT_BITS-1:0] change_p9;
+  reg [BETTER_FRACTION:0] sum_p10;
+
+  delay #(
+      .BITS  (BITS),
+      .CYCLES(ERROR_AT)
+  ) u_y (
+      .clk(clk),
+      .in (y),
+      .out(y_p7)
+  );
+
+  multiplier #(
+      .A_BITS  (BITS),
+      .B_BITS  (BITS),
+      .A_SIGNED(0)
+  ) u_change (
+      .clk(clk),
+      .a(y_p7),
+      .b(error_p7),
+      .product(change_p9)
+  );
+
+  delay #(
+      .BITS  (BITS),
+      .CYCLES(`PHONG_MULTIPLIER_LATENCY)
+  ) u_y_wait (
+      .clk(clk),
+      .in (y_p7),
+      .out(y_p9)
+  );
+
+  always @(posedge clk) begin
+    sum_p10 <= {1'b0, y_p9, {ERROR_FRACTION + 1{1'b0}}}
+        + {{BETTER_FRACTION + 1 - PRODUCT_BITS{change_p9[PRODUCT_BITS-1]}}, change_p9};
+  end
+
+  round_saturate #(
+      .IN_BITS  (BETTER_FRACTION + 1),
+      .DROP     (ERROR_FRACTION + 1),
+      .OUT_BITS (BITS),
+      .IS_SIGNED(0)
+  ) u_better (
+      .clk(clk),
+      .in (sum_p10),
+      .out(better)
+  );
+
+  delay #(
+      .BITS  (BITS),
+      .CYCLES(LATENCY - SQUARE_AT)
+  ) u_x_out (
+      .clk(clk),
+      .in (x_p4),
+      .out(x_out)
+  );
+
+endmodule
+
+`default_nettype wire

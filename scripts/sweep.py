@@ -1,0 +1,192 @@
+"""Error against run time and against hardware, over methods and word widths: `make sweep`.
+
+Every configuration of `model.sweep` is built, simulated, compared with its twin and measured; the
+results go to build/sweep/precision.csv and, as charts, beside it. What did not change since the
+last run is not simulated, synthesized or routed again.
+
+Exit code: 0; 1 if the RTL of a configuration differs from its twin, misses a bound that is derived
+for it, or a tool failed; 2 if the input is wrong, with one line on stderr that says what.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import multiprocessing
+import os
+import sys
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from model.charts import cost_chart, pareto, time_chart
+from model.frame import InputError
+from model.sweep import Point, points
+from scripts import synthesis
+from sim.build import BUILD, BuildError, runtime
+from sim.run_frame import SimulationError
+from sim.sweep import FOLDER, measure
+
+STATED_MHZ = 200.0
+GRADE, SEED = 6, 1
+COLUMNS = (
+    "name", "family", "method", "label", "cycles", "clock_mhz", "clock_source", "frame_us",
+    "max_lsb", "rms_lsb", "p999_lsb", "mean_lsb", "correctly_rounded", "psnr_db", "simulate_s",
+    "model_s", "dsp", "lut", "ff", "ebr", "pareto",
+    "latency_cycles", "pixels", "mismatches", "port_max_lsb", "bound_lsb", "pareto_hardware",
+)  # fmt: skip
+
+
+class _Parser(argparse.ArgumentParser):
+    """Reports a wrong command line like any other wrong input."""
+
+    def error(self, message):
+        raise InputError(message)
+
+
+def parse(argv) -> argparse.Namespace:
+    """The command line `argv`: `area` and `route`, both bool. Raises InputError."""
+    parser = _Parser(prog="sweep", description=__doc__.partition("\n")[0])
+    parser.add_argument("--area", default="", help="1: synthesize, for the hardware's size")
+    parser.add_argument("--route", default="", help="1: place and route, too, for the clock")
+    given = parser.parse_args(argv)
+    for name in ("area", "route"):
+        if getattr(given, name) not in ("", "0", "1"):
+            raise InputError(f"{name.upper()} is `{getattr(given, name)}`; it must be 0 or 1")
+        setattr(given, name, getattr(given, name) == "1")
+    return given
+
+
+def hardware(point: Point, route: bool) -> dict:
+    """Size of a configuration by Yosys, and its clock where it is routed."""
+    config = point.config
+    if route:
+        report = synthesis.run(config, GRADE, (SEED,))
+        used = report["resources"]
+        clock = {
+            "clock_mhz": report["fmax_mhz"]["median"],
+            "clock_source": f"nextpnr, grade {GRADE}, seed {SEED}",
+        }
+    else:
+        folder = BUILD / "synth" / config.name
+        folder.mkdir(parents=True, exist_ok=True)
+        used, clock = synthesis.synthesize(config, folder)["resources"], {}
+    sites = used["lut"] + 2 * used["carry"] + 4 * used["lut_ram"]
+    return {"dsp": used["dsp"], "lut": sites, "ff": used["ff"], "ebr": used["ebr"], **clock}
+
+
+def row(point: Point, area: bool, route: bool) -> dict:
+    """The row of one configuration; COLUMNS but for the Pareto fronts."""
+    found = measure(point)
+    found |= {"clock_mhz": STATED_MHZ, "clock_source": "stated"}
+    found |= dict.fromkeys(("dsp", "lut", "ff", "ebr"))
+    if area or route:
+        found |= hardware(point, route)
+    found["frame_us"] = found["cycles"] / found["clock_mhz"]
+    return found
+
+
+def failures(rows: list[dict]) -> list[str]:
+    """What is wrong with `rows`, a line each."""
+    lines = []
+    for found in rows:
+        if found["mismatches"] or not found["complete"]:
+            lines.append(
+                f"{found['name']}: {found['mismatches']} of {found['pixels']} pixels of RTL and "
+                "twin differ"
+            )
+        if found["bound_lsb"] is not None and found["port_max_lsb"] > found["bound_lsb"]:
+            lines.append(
+                f"{found['name']}: the largest error is {found['port_max_lsb']:.4f} LSB, the "
+                f"derived bound {found['bound_lsb']:.4f}"
+            )
+    return lines
+
+
+def write_csv(rows: list[dict], path: Path) -> None:
+    """The table of `rows`; figures with 6 digits, nothing where there is none."""
+
+    def text(value):
+        if value is None:
+            return ""
+        return f"{value:.6g}" if isinstance(value, float) else value
+
+    part = path.with_name(f".{path.name}.{os.getpid()}")
+    with part.open("w", newline="") as file:
+        out = csv.writer(file, lineterminator="\n")
+        out.writerow(COLUMNS)
+        out.writerows([text(found[name]) for name in COLUMNS] for found in rows)
+    part.replace(path)
+
+
+def finish(rows: list[dict], folder: Path = FOLDER) -> None:
+    """Mark the Pareto fronts in `rows`, and write CSV and charts into `folder`."""
+    error = [found["rms_lsb"] for found in rows]
+    front = pareto([found["frame_us"] for found in rows], error)
+    sized = [found for found in rows if found["dsp"] is not None]
+    # By hardware a point counts that no other beats in multipliers, logic and error together.
+    keys = [(found["dsp"], found["lut"], found["rms_lsb"]) for found in sized]
+    for found, on in zip(rows, front, strict=True):
+        found["pareto"], found["pareto_hardware"] = int(on), None
+    for found, key in zip(sized, keys, strict=True):
+        beaten = any(k != key and all(a <= b for a, b in zip(k, key, strict=True)) for k in keys)
+        found["pareto_hardware"] = int(not beaten)
+    folder.mkdir(parents=True, exist_ok=True)
+    write_csv(rows, folder / "precision.csv")
+    time_chart(rows, folder / "precision_time")
+    if sized:
+        cost_chart(sized, folder / "precision_hardware")
+
+
+def run(todo: list[Point], area: bool, route: bool) -> list[dict]:
+    """The rows of `todo`, as many at a time as there are processors; shows progress."""
+    console = Console(stderr=True)
+    runtime()  # once, before all need it
+    rows: dict[str, dict] = {}
+    columns = (
+        TextColumn("{task.description:<24}"), BarColumn(), MofNCompleteColumn(),
+        TimeElapsedColumn(),
+    )  # fmt: skip
+    spawn = multiprocessing.get_context("spawn")
+    with (
+        Progress(*columns, console=console, transient=True) as bar,
+        ProcessPoolExecutor(os.cpu_count(), mp_context=spawn) as pool,
+    ):
+        task = bar.add_task("sweep", total=len(todo))
+        jobs = {pool.submit(row, point, area, route): point for point in todo}
+        try:
+            for job in as_completed(jobs):
+                found = rows[jobs[job].config.name] = job.result()
+                bar.update(task, advance=1, description=found["name"])
+                if not console.is_terminal:
+                    print(f"{len(rows)} of {len(todo)}: {found['name']}", file=sys.stderr)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+    return [rows[point.config.name] for point in todo]
+
+
+def main(argv=None) -> int:
+    """Run with the command line `argv`; returns the exit code."""
+    try:
+        given = parse(argv)
+    except InputError as error:
+        print(f"Error: {error}", file=sys.stderr)
+        return 2
+    try:
+        rows = run(points(), given.area, given.route)
+    except (BuildError, SimulationError, synthesis.SynthesisError) as error:
+        print(f"Error: {error}", file=sys.stderr)
+        return 1
+    finish(rows)
+    wrong = failures(rows)
+    for line in wrong:
+        print(f"Error: {line}", file=sys.stderr)
+    print(f"{len(rows)} configurations: build/sweep/precision.csv, and charts beside it")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
