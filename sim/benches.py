@@ -28,6 +28,7 @@ def module_bench(name: str) -> ModuleBench:
         return ModuleBench(name, primitives.TOP, "tests.modules.primitives", sources)
     if name in MODULES:
         top, text = bench_source(name)
-        return ModuleBench(name, top, "tests.modules.datapath", {f"{top}.v": text})
+        tests = f"tests.modules.{MODULES[name].tests}"
+        return ModuleBench(name, top, tests, {f"{top}.v": text})
     top = {"control": "control_bench", "phong_pipeline": "pipeline_bench"}[name]
     return ModuleBench(name, top, f"tests.modules.{name}")
