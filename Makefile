@@ -6,6 +6,7 @@ FPS ?= 30
 CLOCK_MHZ ?= 200
 OUT ?=
 SPANS ?=
+TECHNIQUE ?= phong
 PRUNE ?=
 MODULE ?= phong_pipeline
 CONFIG ?= default
@@ -27,9 +28,10 @@ help: ## this list
 	@echo 'make run      render SCENE through the RTL and the model, compare, write pictures and report'
 	@echo '                SCENE=teapot    a bundled scene, or a path to a scene file or a mesh'
 	@echo '                SIZE=640x480    width x height; else the size that the scene gives'
+	@echo '                TECHNIQUE=phong interpolates normals; or gouraud, flat'
 	@echo '                FPS=30          frames a second that the cycle budget is checked for'
 	@echo '                CLOCK_MHZ=200   clock of the hardware'
-	@echo '                OUT=build/NAME  folder of the results; NAME is that of the scene'
+	@echo '                OUT=build/NAME  folder of the results; NAME is that of the scene (and technique)'
 	@echo '                SPANS=FILE      run a span file (see model/spans.py) in place of a scene'
 	@echo '                PRUNE=1         build without what the scene does not need; or PRUNE=SCENE:'
 	@echo '                                without what that one does not need'
@@ -37,6 +39,11 @@ help: ## this list
 	@echo 'make test     lint, then all tests'
 	@echo 'make lint     Verilator -Wall and Verible on rtl/ and sim/, Ruff on Python'
 	@echo 'make results  the README'"'"'s table of results, measured anew'
+	@echo 'make report      one page of all results: build/report/index.html'
+	@echo 'make test-report the page in headless Chromium: what it draws, its controls'
+	@echo 'make test-all    make test and make test-report in one'
+	@echo 'make stability   stiff and extreme cases, a row each: error, bound, RTL against model'
+	@echo 'make adversarial search for the input with the largest error; KEEP=1 keeps a worse one'
 	@echo 'make bench    clocks a second of the simulation, frames a second of the model'
 	@echo 'make synth    synthesis, place and route for an ECP5; build/synth/CONFIG/report.json'
 	@echo '                CONFIG=default  a configuration by name'
@@ -67,6 +74,7 @@ run: setup
 	@$(PYTHON) -m scripts.run --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE)) \
 	  --fps=$(call quote,$(FPS)) --clock-mhz=$(call quote,$(CLOCK_MHZ)) \
 	  --out=$(call quote,$(OUT)) --spans=$(call quote,$(SPANS)) \
+	  --technique=$(call quote,$(TECHNIQUE)) \
 	  --prune=$(call quote,$(PRUNE))
 
 prune: setup
@@ -80,6 +88,24 @@ lint: setup
 
 bench: setup
 	@$(PYTHON) -m scripts.bench
+
+.PHONY: report test-report test-all stability adversarial
+report: setup
+	@$(PYTHON) -m scripts.report
+
+test-report: setup
+	@command -v chromium >/dev/null || \
+	  { echo 'The report page is tested in Chromium: apt-get install chromium' >&2; exit 2; }
+	@$(PYTHON) -m pytest -m browser
+
+test-all: lint
+	@$(PYTHON) -m pytest -m ''
+
+stability: setup
+	@$(PYTHON) -m scripts.stability
+
+adversarial: setup
+	@$(PYTHON) -m scripts.adversarial $(if $(KEEP),--keep)
 
 results: setup
 	@$(PYTHON) -m scripts.results

@@ -97,10 +97,16 @@ class Config:
             if names and getattr(self, f.name) not in names:
                 said = f"{f.name} is `{getattr(self, f.name)}`, not one of {', '.join(names)}"
                 raise ValueError(said)
+        if self.channels not in (1, 3):
+            raise ValueError(f"channels is {self.channels}, not 1 or 3")
+
+    # -- technique ---------------------------------------------------------------------------------
+    technique: str = choice("phong", "gouraud", "flat")  # what is interpolated: normals, or
+    #   intensities from the vertices, or nothing: one intensity a face
 
     # -- spans and pixels --------------------------------------------------------------------------
     coordinate_bits: int = 12  # x and y: pictures of up to 4096 x 4096
-    normal: Format = _signed(1, 30)  # interpolated normal, one component; also its step
+    normal: Format = _signed(1, 30)  # what is interpolated, one component; also its step
     material_bits: int = 4  # 16 materials
     colour_bits: int = 8  # code of red, green, blue
 
@@ -171,6 +177,11 @@ class Config:
         return (1 << self.weight_index_bits) + 1
 
     @property
+    def values(self) -> int:
+        """How many values a span carries over its pixels: a normal's x, y, z, or intensities."""
+        return 3 if self.technique == "phong" else self.channels
+
+    @property
     def max_size(self) -> int:
         """Largest width and height of a picture, and largest length of a span, in pixels."""
         return 1 << self.coordinate_bits
@@ -190,3 +201,10 @@ class Config:
 
 
 DEFAULT = Config()
+
+#: The configuration of each technique by name.
+TECHNIQUES = {
+    "phong": DEFAULT,
+    "gouraud": Config(name="gouraud", technique="gouraud"),
+    "flat": Config(name="flat", technique="flat"),
+}

@@ -218,12 +218,19 @@ def weight(points, config: Config) -> float:
 
 
 def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
-    """The budget of one material of `frame`; the last row bounds |code - 255 S| in LSB."""
+    """The budget of one material of `frame`; the last row bounds |code - 255 S| in LSB.
+
+    S is eq. (3) at the pixel; for Gouraud and flat shading, the interpolated intensity.
+    """
+    white = (1 << config.colour_bits) - 1
+    if config.technique != "phong":
+        cut = Row("cut of S", config.intensity.lsb, "interpolation is exact, the sum is cut once")
+        total = white * cut.bound + 0.5
+        return [cut, Row("code", total, f"LSB: {white} times the cut, and the final rounding")]
     table = frame.materials
     n = float(config.exponent.real(table.exponent[material]))
     diffuse = float(config.coefficient.real(table.diffuse[material]).max())
     w = float(config.coefficient.real(table.weight[material]).max())
-    white = (1 << config.colour_bits) - 1
     parts = [
         Row("normalizer: direction", direction(config), "mantissas of the normal, radians"),
         Row("normalizer: length", length(config), "1/sqrt and its operand, relative"),

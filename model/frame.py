@@ -10,7 +10,9 @@ from .config import Config
 
 #: One span (see the README, "Formats"): `length` pixels from (x, y) to the right, the normal at
 #: the centre of the first pixel and its step to the next (codes of `Config.normal`, in the light
-#: frame), the index of the material, and whether it is the last span of the frame.
+#: frame), the index of the material, and whether it is the last span of the frame. Gouraud and flat
+#: shading have intensities S of red, green, blue in place of the normal's x, y, z, with one channel
+#: three equal ones; with flat shading the step is 0.
 SPAN_DTYPE = np.dtype(
     [
         ("x", np.int32),

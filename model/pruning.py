@@ -94,6 +94,8 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
 
     Only takes away from `config`, never adds. The name is that of `config` with `pruned` to it.
     """
+    if config.technique != "phong":
+        return _prune_intensities(frame, config)
     f = facts(frame)
     count = len(f.materials)
     rows: list[Row] = []
@@ -156,3 +158,15 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
         "turning of Zn",
     )  # fmt: skip
     return dataclasses.replace(config, name=f"{config.name}-pruned", **chosen), rows
+
+
+def _prune_intensities(frame: Frame, config: Config) -> tuple[Config, list[Row]]:
+    """`prune` where spans carry intensities: for grey, one interpolator will do."""
+    values = frame.spans["start"], frame.spans["step"]
+    coloured = np.any([(v != v[:, :1]).any(axis=1) for v in values], axis=0)
+    why = f"red, green and blue differ in {int(coloured.sum()) or 'none'} of {len(coloured)} spans"
+    row = Row(
+        "channels", bool(coloured.any()), why, "two of three channels, and of the span's words"
+    )
+    channels = config.channels if row.needed else 1
+    return dataclasses.replace(config, name=f"{config.name}-pruned", channels=channels), [row]

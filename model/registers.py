@@ -29,8 +29,10 @@ def writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
     """(address, word) of every write that `frame` needs: registers and the materials in use.
 
     What a build leaves out is written only where the frame does need it; the RTL answers such a
-    write with `unsupported`.
+    write with `unsupported`. Nothing is written where intensities come with the spans.
     """
+    if config.technique != "phong":
+        return []
     kind = 1 << (config.material_bits + config.weight_index_bits)
     word_mask = (1 << word_bits(config)) - 1
     table = frame.materials

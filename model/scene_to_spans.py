@@ -2,7 +2,8 @@
 
 Triangles come from the scene's objects, go through the camera, are resolved into visible segments
 by scan line (`visibility`), and each segment becomes a span: the normal at its first dot and the
-step to the next (`interpolation`), in the light frame.
+step to the next (`interpolation`), in the light frame. Gouraud and flat shading have intensities in
+place of normals, of the vertices or of the face (`vertex_shading`).
 """
 
 from __future__ import annotations
@@ -12,12 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import visibility
+from . import vertex_shading, visibility
 from .camera import light_frame
 from .config import DEFAULT, Config
 from .frame import SPAN_DTYPE, ExactFrame, Frame, InputError, MaterialTable, half_vector_codes
 from .interpolation import interpolate, scan_line_weights
-from .mesh import apply_matrix, normalize
+from .mesh import apply_matrix, face_normals, normalize
 from .scene import Scene
 from .visibility import GRID, Segments, Triangles
 
@@ -52,21 +53,36 @@ def front_end(
         raise InputError(
             f"{scene.name}: {len(scene.materials)} materials, but the table has {config.materials}"
         )
+    if config.technique != "phong" and scene.interpolation != "linear":
+        raise InputError(
+            f"{scene.name}: interpolation = {scene.interpolation} is for normals, "
+            f"which {config.technique} shading does not interpolate"
+        )
+    if config.channels == 1 and any(len(set(m.color)) > 1 for m in scene.materials):
+        raise InputError(f"{scene.name}: has colours, but the pipeline is built for grey")
     frame_axes, eye = light_frame(scene.light, scene.camera.axes[2])
-    triangles = _triangles(scene, frame_axes)
+    frame, exact = _frame(scene, eye, config)
+    triangles = _triangles(scene, frame_axes, frame, exact, config)
 
     parts = []
-    for segments, done in _visible(triangles, scene.width, scene.height):
+    for segments, done in visible(triangles, scene.width, scene.height):
         if len(segments):
             parts.append(_spans(triangles, segments, config, scene.interpolation))
         if progress:
             progress(done)
-    spans = np.concatenate([p[0] for p in parts] or [np.zeros(0, SPAN_DTYPE)])
-    start = np.concatenate([p[1] for p in parts] or [np.zeros((0, 3))])
-    step = np.concatenate([p[2] for p in parts] or [np.zeros((0, 3))])
-    if len(spans):
-        spans["last"][-1] = True
+    if parts:
+        frame.spans, exact.start, exact.step = map(np.concatenate, zip(*parts, strict=True))
+        frame.spans["last"][-1] = True
+    return FrontEnd(
+        frame,
+        exact,
+        sum(len(o.mesh.faces) for o in scene.objects),
+        sum(o.mesh.degenerate for o in scene.objects),
+    )
 
+
+def _frame(scene: Scene, eye: np.ndarray, config: Config) -> tuple[Frame, ExactFrame]:
+    """Registers and material table of the picture in codes and before rounding, without spans."""
     table, cp, d, weight, exponent = _materials(scene, config)
     background = np.floor(np.asarray(scene.background) * (2**config.colour_bits - 1) + 0.5)
     frame = Frame(
@@ -76,39 +92,45 @@ def front_end(
         scene.two_sided,
         tuple(int(c) for c in background),
         table,
-        spans,
+        np.zeros(0, SPAN_DTYPE),
     )
-    exact = ExactFrame(start, step, eye, cp, d, weight, exponent)
-    return FrontEnd(
-        frame,
-        exact,
-        sum(len(o.mesh.faces) for o in scene.objects),
-        sum(o.mesh.degenerate for o in scene.objects),
-    )
+    nothing = np.zeros((0, 3))
+    return frame, ExactFrame(nothing, nothing, eye, cp, d, weight, exponent)
 
 
-def _triangles(scene: Scene, frame_axes: np.ndarray) -> Triangles:
-    """All triangles of the scene that face the eye, on the screen, normals in the light frame."""
+def _triangles(
+    scene: Scene, frame_axes: np.ndarray, frame: Frame, exact: ExactFrame, config: Config
+) -> Triangles:
+    """All triangles of the scene that face the eye, on the screen, with what is interpolated:
+    normals in the light frame, or intensities as the hardware has them, then exact ones."""
     meshes = [o.mesh for o in scene.objects]
     points = np.concatenate([m.vertices[m.faces] for m in meshes])
-    normal = apply_matrix(frame_axes, np.concatenate([m.normals for m in meshes]))
+    if config.technique == "flat":
+        face = np.concatenate([face_normals(m.vertices, m.faces) for m in meshes])
+        normal = np.repeat(face[:, None], 3, axis=1)
+    else:
+        normal = np.concatenate([m.normals for m in meshes])
+    value = normalize(apply_matrix(frame_axes, normal))
     material = np.repeat([o.material for o in scene.objects], [len(m.faces) for m in meshes])
+    if config.technique != "phong":
+        given = value.reshape(-1, 3), np.repeat(material, 3)
+        rounded = vertex_shading.intensities(*given, frame, config)
+        ideal = vertex_shading.exact_intensities(*given, exact, scene.two_sided)
+        value = np.concatenate([rounded, ideal], axis=-1).reshape(-1, 3, 6)
     corners = scene.camera.project(points, scene.width, scene.height)
-    corners, normal, material = visibility.clip(
-        corners, normalize(normal), material, scene.camera.near
-    )
+    corners, value, material = visibility.clip(corners, value, material, scene.camera.near)
     w = corners[..., 2]
     return visibility.set_up(
         corners[..., 0] / w,
         corners[..., 1] / w,
         scene.camera.depth(w, corners[..., 3]),
-        normal,
+        value,
         material,
         scene.two_sided,
     )
 
 
-def _visible(triangles: Triangles, width: int, height: int):
+def visible(triangles: Triangles, width: int, height: int):
     """Yield the visible segments of one band of scan lines after the other, from the top, with
     the part of the picture done; bands are cut so that memory stays bounded."""
     first, end = visibility.line_range(triangles, width, height)
@@ -147,18 +169,18 @@ def _at_dots(triangles: Triangles, segments: Segments, x, values, normalize_edge
 def _spans(triangles: Triangles, segments: Segments, config: Config, interpolation: str):
     """SPAN_DTYPE[n] of `segments`, and start and step before rounding, float64[n, 3] each.
 
-    The step comes from the normals at both ends, each a mean of unit vectors whose weights are
-    sound even in slivers; a gradient over the triangle's plane would not be.
+    The step comes from the values at both ends, each a mean of those of the vertices whose weights
+    are sound even in slivers; a gradient over the triangle's plane would not be.
     """
     ends = [
-        _at_dots(triangles, segments, x, triangles.normal, interpolation == "normalized_edges")
+        _at_dots(triangles, segments, x, triangles.value, interpolation == "normalized_edges")
         for x in (segments.left, segments.right - 1)
     ]
     length = segments.right - segments.left
     start, step = ends[0], (ends[1] - ends[0]) / np.maximum(length - 1, 1)[:, None]
 
     # A step of +2, from a normal to its opposite in one dot, is no code: single dots instead.
-    rounded = np.floor(np.ldexp(step, config.normal.fraction) + 0.5)
+    rounded = np.floor(np.ldexp(step[:, :3], config.normal.fraction) + 0.5)
     single = ~np.all(config.normal.contains(rounded), axis=1)
     pieces = np.where(single, length, 1)
     piece = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)
@@ -171,8 +193,8 @@ def _spans(triangles: Triangles, segments: Segments, config: Config, interpolati
     spans["y"] = segments.y[row]
     spans["length"] = np.where(single[row], 1, length[row])
     spans["material"] = triangles.material[segments.triangle[row]]
-    spans["start"], spans["step"] = encode(start, step, spans["length"], config)
-    return spans, start, step
+    spans["start"], spans["step"] = encode(start[:, :3], step[:, :3], spans["length"], config)
+    return spans, start[:, -3:], step[:, -3:]
 
 
 def encode(start, step, length, config: Config) -> tuple[np.ndarray, np.ndarray]:

@@ -118,6 +118,22 @@ def teapot(divisions: int = 10) -> Mesh:
     return Mesh(vertices[first], place.reshape(-1)[faces], normals)
 
 
+def teapot_patch(number: int) -> np.ndarray:
+    """float64[4, 4, 3]: the control points of patch `number` (0 to 31) of the teapot, by u, then v.
+
+    0 to 3 are the rim, 4 to 11 the body, 12 to 15 the handle, 16 to 19 the spout, 20 to 27 the lid
+    and 28 to 31 the bottom.
+    """
+    points, patches = _read_patches()
+    return points[patches[number]].reshape(4, 4, 3)
+
+
+def patch_mesh(control: np.ndarray, divisions: int = 10) -> Mesh:
+    """One bicubic patch, float64[4, 4, 3]; vertex (D + 1) j + i has u = i/D, v = j/D."""
+    grid, normals = patch_surface(control[None], divisions)
+    return _grid_mesh(grid[0].swapaxes(0, 1), normals[0].swapaxes(0, 1))
+
+
 def patch_surface(control: np.ndarray, divisions: int) -> tuple[np.ndarray, np.ndarray]:
     """Points and unit normals of bicubic Bezier patches on a regular grid of parameters.
 
@@ -127,7 +143,7 @@ def patch_surface(control: np.ndarray, divisions: int) -> tuple[np.ndarray, np.n
     other parameter: near u = 0, dS/dv = u d2S/dudv.
     """
     t = np.linspace(0.0, 1.0, divisions + 1)
-    value, slope = _bernstein(t), _bernstein_slope(t)
+    value, slope = bernstein(t), bernstein_slope(t)
 
     def surface(in_u, in_v):
         return np.einsum("ui,pijc,vj->puvc", in_u, control, in_v)
@@ -159,13 +175,13 @@ def _read_patches() -> tuple[np.ndarray, np.ndarray]:
     return points, indices
 
 
-def _bernstein(t: np.ndarray) -> np.ndarray:
+def bernstein(t: np.ndarray) -> np.ndarray:
     """float64[T, 4]: the cubic Bernstein polynomials at `t` (float64[T])."""
     s = 1.0 - t
     return np.stack([s**3, 3 * t * s**2, 3 * t**2 * s, t**3], axis=-1)
 
 
-def _bernstein_slope(t: np.ndarray) -> np.ndarray:
+def bernstein_slope(t: np.ndarray) -> np.ndarray:
     """float64[T, 4]: their derivatives."""
     s = 1.0 - t
     return np.stack([-3 * s**2, 3 * s**2 - 6 * t * s, 6 * t * s - 3 * t**2, 3 * t**2], axis=-1)

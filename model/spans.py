@@ -21,6 +21,8 @@ significant byte first, which is how Verilog's `$fread` fills a register. Its fi
 upwards, are start_x, start_y, start_z, step_x, step_y, step_z (`Config.normal`), x, y
 (`coordinate_bits`), length (one bit more), material (`material_bits`) and last (1 bit); zeros fill
 up to the next power of two of bytes. With the default configuration that is 234 bits in 32 bytes.
+For Gouraud shading x, y, z of start and step are red, green, blue (for grey there is x only); for
+flat shading there is no step.
 
 Codes, not reals, stand in the file, so that a round trip is exact and a file that once showed an
 error shows it again.
@@ -41,6 +43,7 @@ MAGIC = "phong75-spans 1"
 
 #: The fields of `Config` without which the codes of a file mean nothing.
 FORMATS = (
+    "technique",
     "coordinate_bits",
     "normal",
     "material_bits",
@@ -67,9 +70,9 @@ class SpanField(NamedTuple):
 
 def span_fields(config: Config) -> list[SpanField]:
     """The fields of a record, from bit 0 upwards, without gaps."""
-    widths = [
-        (f"{what}_{axis}", config.normal.bits) for what in ("start", "step") for axis in "xyz"
-    ]
+    carried = ("start",) if config.technique == "flat" else ("start", "step")
+    axes = "xyz"[: config.values]
+    widths = [(f"{what}_{axis}", config.normal.bits) for what in carried for axis in axes]
     widths += [
         ("x", config.coordinate_bits),
         ("y", config.coordinate_bits),
@@ -139,6 +142,8 @@ def pack(spans: np.ndarray, config: Config) -> bytes:
     Raises ValueError if a value does not fit its field.
     """
     words = np.zeros((len(spans), record_bits(config) // _WORD), np.uint64)
+    if not np.array_equal(spans, _implied(spans, config)):
+        raise ValueError("a span has a step or colours that a record has no place for")
     for field in span_fields(config):
         value, signed = _column(spans, field.name)
         low = -(1 << (field.bits - 1)) if signed else 0
@@ -168,6 +173,16 @@ def unpack(body: bytes, config: Config) -> np.ndarray:
         if signed:
             value -= (value >> (field.bits - 1)) << field.bits
         column[:] = value
+    return _implied(spans, config)
+
+
+def _implied(spans, config):
+    """`spans` with what a record leaves out: one channel is grey, flat shading has no steps."""
+    spans = spans.copy()
+    for what in ("start", "step"):
+        spans[what][:, config.values :] = spans[what][:, :1]
+    if config.technique == "flat":
+        spans["step"] = 0
     return spans
 
 

@@ -41,13 +41,14 @@ class Triangles:
     """Triangles ready for scanning, vertices ordered from top to bottom.
 
     x, y: int64[T, 3], screen coordinates in 1/GRID pixel. depth: float64[T, 3], growing away from
-    the eye, linear over the screen. normal: float64[T, 3, 3]. material: int64[T].
+    the eye, linear over the screen. value: float64[T, 3, C], what is interpolated, a normal or
+    intensities. material: int64[T].
     """
 
     x: np.ndarray
     y: np.ndarray
     depth: np.ndarray
-    normal: np.ndarray
+    value: np.ndarray
     material: np.ndarray
 
     def __len__(self) -> int:
@@ -59,7 +60,7 @@ class Triangles:
             self.x[which],
             self.y[which],
             self.depth[which],
-            self.normal[which],
+            self.value[which],
             self.material[which],
         )
 
@@ -81,15 +82,15 @@ class Segments:
         return Segments(self.triangle[which], self.y[which], self.left[which], self.right[which])
 
 
-def clip(corners: np.ndarray, normal: np.ndarray, material: np.ndarray, near: float):
+def clip(corners: np.ndarray, value: np.ndarray, material: np.ndarray, near: float):
     """Cut triangles at the near plane w = `near` and at the guard band round the screen.
 
-    corners: float64[T, 3, 4], homogeneous screen points (X, Y, w, z) of `Camera.project`; normal:
-    float64[T, 3, 3]; material: int[T]. Returns the same three for the triangles that remain; a
+    corners: float64[T, 3, 4], homogeneous screen points (X, Y, w, z) of `Camera.project`; value:
+    float64[T, 3, C]; material: int[T]. Returns the same three for the triangles that remain; a
     triangle may become two (Sutherland and Hodgman 1974, one plane after the other). Neighbours
     cut a common edge from the same end with the same arithmetic, at the same point.
     """
-    values = np.concatenate([corners, normal], axis=-1)
+    values = np.concatenate([corners, value], axis=-1)
     planes = [
         lambda v: v[..., 2] - near,
         lambda v: v[..., 0] + GUARD * v[..., 2],
@@ -113,7 +114,8 @@ def clip(corners: np.ndarray, normal: np.ndarray, material: np.ndarray, near: fl
         tip = np.stack([t[:, 0], _cut(t, r, 0, 1), _cut(t, r, 0, 2)], axis=1)
         t, r = turned[two], reach[two]
         p, q = _cut(t, r, 1, 0), _cut(t, r, 2, 0)
-        quad = np.stack([p, t[:, 1], t[:, 2], p, t[:, 2], q], axis=1).reshape(-1, 3, 7)
+        quad = np.stack([p, t[:, 1], t[:, 2], p, t[:, 2], q], axis=1)
+        quad = quad.reshape(-1, 3, values.shape[-1])
         values = np.concatenate([values[whole], tip, quad])
         material = np.concatenate([material[whole], material[one], np.repeat(material[two], 2)])
     return values[..., :4], values[..., 4:], material
@@ -125,7 +127,7 @@ def _cut(values: np.ndarray, distance: np.ndarray, inner: int, outer: int) -> np
     return values[:, inner] + t[:, None] * (values[:, outer] - values[:, inner])
 
 
-def set_up(x, y, depth, normal, material, two_sided: bool) -> Triangles:
+def set_up(x, y, depth, value, material, two_sided: bool) -> Triangles:
     """Snap to the grid, drop back faces (unless `two_sided`) and what has no area on the screen.
 
     x, y: float64[T, 3], pixels, counter-clockwise seen from outside (with y down: negative area);
@@ -137,7 +139,7 @@ def set_up(x, y, depth, normal, material, two_sided: bool) -> Triangles:
     order = np.argsort(y[keep], axis=1, kind="stable")
     row = keep[:, None]
     return Triangles(
-        x[row, order], y[row, order], depth[row, order], normal[row, order], material[keep]
+        x[row, order], y[row, order], depth[row, order], value[row, order], material[keep]
     )
 
 

@@ -59,6 +59,12 @@
   + `PHONG_LEFT_SHIFTER_LATENCY \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
+// From a normal to zero_normal.
+`define PHONG_ZERO_NORMAL_LATENCY \
+  ( 1                                /* significant bits of three components */ \
+  + `PHONG_LEADING_ZEROS_LATENCY \
+  + 1 )
+
 `define PHONG_NORMALIZER_LATENCY \
   ( `PHONG_ALIGN_LATENCY \
   + `PHONG_MULTIPLIER_LATENCY        /* squares */ \
@@ -170,7 +176,14 @@
   ( `PHONG_SPECULAR_LATENCY \
   + `PHONG_COLOUR_CHANNEL_LATENCY )  /* W * power runs beside its products */
 
+`define PHONG_INTENSITY_CODE_LATENCY \
+  ( 1                                /* clamp, cut */ \
+  + 2 )                              /* code: times 255, round */
+
 // From a pixel that leaves the interpolators to its colour.
-`define PHONG_PIXEL_LATENCY (`PHONG_NORMAL_LATENCY + `PHONG_SHADING_UNIT_LATENCY)
+`define PHONG_PIXEL_LATENCY \
+  ( `PHONG_TECHNIQUE == `PHONG_TECHNIQUE_PHONG \
+  ? `PHONG_NORMAL_LATENCY + `PHONG_SHADING_UNIT_LATENCY \
+  : `PHONG_INTENSITY_CODE_LATENCY )  /* Gouraud, flat */
 
 `endif

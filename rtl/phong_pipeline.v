@@ -1,12 +1,14 @@
 // phong_pipeline: spans in, shaded pixels out, one pixel a clock (Bui Tuong Phong, 1975).
 // Three interpolators in parallel, a normalizer, the shading function; a FIFO at the end takes
 // back-pressure. Latency from an accepted span to its first pixel: PHONG_PIXEL_LATENCY + 3.
-// Wiring in data order.
+// Or, in place of what is between the walker and the FIFO, the paper's older techniques: Gouraud's
+// interpolated intensities, or one intensity a face. Wiring in data order.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
 
 module phong_pipeline #(
+    parameter TECHNIQUE        = `PHONG_TECHNIQUE,
     parameter NORMAL_METHOD    = `PHONG_NORMAL_METHOD,
     parameter NORMAL_BITS      = `PHONG_NORMAL_BITS,
     parameter COORDINATE_BITS  = `PHONG_COORDINATE_BITS,
@@ -23,12 +25,14 @@ module phong_pipeline #(
     input wire clk,
     input wire reset,  // synchronous; registers and material table keep their contents
 
-    // write port for registers and material table (see register_map); hold during a frame
+    // write port for registers and material table (see register_map); hold during a frame;
+    // the older techniques have neither
     input wire                                write_enable,
     input wire [MATERIAL_BITS+INDEX_BITS:0] write_address,
     input wire [      2*COEFFICIENT_BITS:0] write_word,
 
-    // spans: {material, length, y, x, step z, y, x (s1.30), start z, y, x (s1.30)}
+    // spans: {material, length, y, x, step z, y, x (s1.30), start z, y, x (s1.30)};
+    // Gouraud: blue, green, red in place of z, y, x; flat: without the steps
     input  wire                 s_axis_tvalid,
     output wire                 s_axis_tready,
     input  wire [SPAN_BITS-1:0] s_axis_tdata,
@@ -41,46 +45,21 @@ module phong_pipeline #(
     output wire                  m_axis_tlast,   // last pixel of the frame
 
     output wire illegal_span,  // for one clock: a span left its word, the counter, or was empty
-    output wire unsupported  // for one clock: a word or a span needs what this build leaves out
+    output wire zero_normal,   // for one clock: a pixel's normal is the zero vector
+    output wire unsupported    // for one clock: a word or a span needs what this build leaves out
 );
 
-  // ---- registers ----
-  wire [HALF_BITS-1:0] half_x, half_z;
-  wire two_sided;
-  wire write_weight, write_exponent;
-  wire [2:0] write_ambient, write_diffuse;
-  wire [MATERIAL_BITS+INDEX_BITS-1:0] table_address;
-  wire [2*COEFFICIENT_BITS:0] table_word;
-
-  register_map u_register_map (
-      .clk(clk),
-      .write_enable(write_enable),
-      .write_address(write_address),
-      .write_word(write_word),
-      .half_x(half_x),
-      .half_z(half_z),
-      .two_sided(two_sided),
-      .write_weight(write_weight),
-      .write_exponent(write_exponent),
-      .write_ambient(write_ambient),
-      .write_diffuse(write_diffuse),
-      .table_address(table_address),
-      .table_word(table_word),
-      .unsupported(unsupported)
-  );
-
   // ---- spans to pixels ----
-  wire [NORMAL_BITS-1:0] start_x, start_y, start_z;
-  wire [NORMAL_BITS-1:0] step_x, step_y, step_z;
+  localparam VALUES_BITS = SPAN_BITS - MATERIAL_BITS - 3 * COORDINATE_BITS - 1;
+
+  wire [VALUES_BITS-1:0] span_values;  // what is interpolated over the span
   wire [COORDINATE_BITS-1:0] span_x, span_y;
   wire [COORDINATE_BITS:0] span_length;
   wire [MATERIAL_BITS-1:0] span_material;
 
-  assign {span_material, span_length, span_y, span_x,
-          step_z, step_y, step_x, start_z, start_y, start_x} = s_axis_tdata;
+  assign {span_material, span_length, span_y, span_x, span_values} = s_axis_tdata;
 
-  wire load, advance, credit;
-  wire overflow_x, overflow_y, overflow_z;
+  wire load, advance, overflow, credit;
   wire pixel_valid, pixel_last;
   wire [COORDINATE_BITS-1:0] pixel_x, pixel_y;
   wire [MATERIAL_BITS-1:0] pixel_material;
@@ -97,7 +76,7 @@ module phong_pipeline #(
       .span_last(s_axis_tlast),
       .load(load),
       .advance(advance),
-      .overflow(overflow_x | overflow_y | overflow_z),
+      .overflow(overflow),
       .credit(credit),
       .pixel_valid(pixel_valid),
       .pixel_x(pixel_x),
@@ -107,107 +86,176 @@ module phong_pipeline #(
       .illegal_span(illegal_span)
   );
 
-  // ---- three interpolators in parallel ----
-  wire [NORMAL_BITS-1:0] normal_x, normal_y, normal_z;
-
-  normal_interpolator u_interpolator_x (
-      .clk(clk),
-      .load(load),
-      .advance(advance),
-      .start(start_x),
-      .step(step_x),
-      .value(normal_x),
-      .overflow(overflow_x)
-  );
-
-  normal_interpolator u_interpolator_y (
-      .clk(clk),
-      .load(load),
-      .advance(advance),
-      .start(start_y),
-      .step(step_y),
-      .value(normal_y),
-      .overflow(overflow_y)
-  );
-
-  normal_interpolator u_interpolator_z (
-      .clk(clk),
-      .load(load),
-      .advance(advance),
-      .start(start_z),
-      .step(step_z),
-      .value(normal_z),
-      .overflow(overflow_z)
-  );
-
-  // ---- unit normal ----
-  wire [UNIT_BITS-1:0] unit_x, unit_y, unit_z;
-  wire [COSINE_BITS-1:0] cosine;
-  wire lit;
-  wire [MATERIAL_BITS-1:0] material;
+  // ---- pixels to colours ----
+  wire [COLOUR_BITS-1:0] red, green, blue;
 
   generate
-    if (NORMAL_METHOD == `PHONG_NORMAL_METHOD_NONE) begin : gen_unnormalized
-      unnormalized u_unnormalized (
+    if (TECHNIQUE == `PHONG_TECHNIQUE_PHONG) begin : gen_phong
+      // ---- registers ----
+      wire [HALF_BITS-1:0] half_x, half_z;
+      wire two_sided;
+      wire write_weight, write_exponent;
+      wire [2:0] write_ambient, write_diffuse;
+      wire [MATERIAL_BITS+INDEX_BITS-1:0] table_address;
+      wire [2*COEFFICIENT_BITS:0] table_word;
+
+      register_map u_register_map (
           .clk(clk),
+          .write_enable(write_enable),
+          .write_address(write_address),
+          .write_word(write_word),
+          .half_x(half_x),
+          .half_z(half_z),
           .two_sided(two_sided),
-          .x(normal_x),
-          .y(normal_y),
-          .z(normal_z),
-          .unit_x(unit_x),
-          .unit_y(unit_y),
-          .unit_z(unit_z),
-          .cosine(cosine),
-          .lit(lit)
+          .write_weight(write_weight),
+          .write_exponent(write_exponent),
+          .write_ambient(write_ambient),
+          .write_diffuse(write_diffuse),
+          .table_address(table_address),
+          .table_word(table_word),
+          .unsupported(unsupported)
       );
-    end else begin : gen_normalized
-      normalizer u_normalizer (
+
+      // ---- three interpolators in parallel ----
+      wire [NORMAL_BITS-1:0] start_x, start_y, start_z;
+      wire [NORMAL_BITS-1:0] step_x, step_y, step_z;
+      wire [NORMAL_BITS-1:0] normal_x, normal_y, normal_z;
+      wire overflow_x, overflow_y, overflow_z;
+
+      assign {step_z, step_y, step_x, start_z, start_y, start_x} = span_values;
+      assign overflow = overflow_x | overflow_y | overflow_z;
+
+      normal_interpolator u_interpolator_x (
           .clk(clk),
-          .two_sided(two_sided),
-          .x(normal_x),
-          .y(normal_y),
-          .z(normal_z),
+          .load(load),
+          .advance(advance),
+          .start(start_x),
+          .step(step_x),
+          .value(normal_x),
+          .overflow(overflow_x)
+      );
+
+      normal_interpolator u_interpolator_y (
+          .clk(clk),
+          .load(load),
+          .advance(advance),
+          .start(start_y),
+          .step(step_y),
+          .value(normal_y),
+          .overflow(overflow_y)
+      );
+
+      normal_interpolator u_interpolator_z (
+          .clk(clk),
+          .load(load),
+          .advance(advance),
+          .start(start_z),
+          .step(step_z),
+          .value(normal_z),
+          .overflow(overflow_z)
+      );
+
+      // ---- unit normal ----
+      wire [UNIT_BITS-1:0] unit_x, unit_y, unit_z;
+      wire [COSINE_BITS-1:0] cosine;
+      wire lit;
+      wire [MATERIAL_BITS-1:0] material;
+
+      if (NORMAL_METHOD == `PHONG_NORMAL_METHOD_NONE) begin : gen_unnormalized
+        unnormalized u_unnormalized (
+            .clk(clk),
+            .two_sided(two_sided),
+            .x(normal_x),
+            .y(normal_y),
+            .z(normal_z),
+            .unit_x(unit_x),
+            .unit_y(unit_y),
+            .unit_z(unit_z),
+            .cosine(cosine),
+            .lit(lit)
+        );
+        assign zero_normal = 1'b0;  // nobody divides by its length
+      end else begin : gen_normalized
+        normalizer u_normalizer (
+            .clk(clk),
+            .reset(reset),
+            .two_sided(two_sided),
+            .valid(pixel_valid),
+            .x(normal_x),
+            .y(normal_y),
+            .z(normal_z),
+            .unit_x(unit_x),
+            .unit_y(unit_y),
+            .unit_z(unit_z),
+            .cosine(cosine),
+            .lit(lit),
+            .zero_normal(zero_normal)
+        );
+      end
+
+      delay #(
+          .BITS  (MATERIAL_BITS),
+          .CYCLES(`PHONG_NORMAL_LATENCY)
+      ) u_material (
+          .clk(clk),
+          .in (pixel_material),
+          .out(material)
+      );
+
+      // ---- colour ----
+      shading_unit u_shading_unit (
+          .clk(clk),
+          .half_x(half_x),
+          .half_z(half_z),
+          .write_weight(write_weight),
+          .write_exponent(write_exponent),
+          .write_ambient(write_ambient),
+          .write_diffuse(write_diffuse),
+          .write_address(table_address),
+          .write_word(table_word),
           .unit_x(unit_x),
           .unit_y(unit_y),
           .unit_z(unit_z),
           .cosine(cosine),
-          .lit(lit)
+          .lit(lit),
+          .material(material),
+          .red(red),
+          .green(green),
+          .blue(blue)
+      );
+    end else if (TECHNIQUE == `PHONG_TECHNIQUE_GOURAUD) begin : gen_gouraud
+      assign zero_normal = 1'b0;  // there are no normals
+      assign unsupported = write_enable;  // there is nothing to write
+
+      gouraud_unit u_gouraud_unit (
+          .clk(clk),
+          .load(load),
+          .advance(advance),
+          .values(span_values),
+          .red(red),
+          .green(green),
+          .blue(blue),
+          .overflow(overflow)
+      );
+    end else begin : gen_flat
+      assign overflow = 1'b0;  // nothing is added
+      assign zero_normal = 1'b0;
+      assign unsupported = write_enable;
+
+      flat_unit u_flat_unit (
+          .clk(clk),
+          .load(load),
+          .advance(advance),
+          .values(span_values),
+          .red(red),
+          .green(green),
+          .blue(blue)
       );
     end
   endgenerate
 
-  delay #(
-      .BITS  (MATERIAL_BITS),
-      .CYCLES(`PHONG_NORMAL_LATENCY)
-  ) u_material (
-      .clk(clk),
-      .in (pixel_material),
-      .out(material)
-  );
-
-  // ---- colour ----
-  wire [COLOUR_BITS-1:0] red, green, blue;
-
-  shading_unit u_shading_unit (
-      .clk(clk),
-      .half_x(half_x),
-      .half_z(half_z),
-      .write_weight(write_weight),
-      .write_exponent(write_exponent),
-      .write_ambient(write_ambient),
-      .write_diffuse(write_diffuse),
-      .write_address(table_address),
-      .write_word(table_word),
-      .unit_x(unit_x),
-      .unit_y(unit_y),
-      .unit_z(unit_z),
-      .cosine(cosine),
-      .lit(lit),
-      .material(material),
-      .red(red),
-      .green(green),
-      .blue(blue)
-  );
+  // The older techniques have no registers and no materials.
+  wire unused = &{1'b0, write_address, write_word, pixel_material};
 
   // ---- pixels out ----
   pixel_fifo u_pixel_fifo (

@@ -96,6 +96,7 @@ module pixel_fifo #(
   localparam PIXEL_BITS = PLACE_BITS + CHANNELS * COLOUR_BITS;
 
   wire [3*COLOUR_BITS-1:0] rgb = {red, green, blue};  // one channel: all of them blue
+  wire unused = &{1'b0, rgb};
   wire [PIXEL_BITS-1:0] chosen[0:BANKS];
 
   assign chosen[0] = {PIXEL_BITS{1'b0}};

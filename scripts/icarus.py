@@ -41,7 +41,7 @@ def main(argv: list[str]) -> int:
         folder = BUILD / "icarus" / "run" / name
         begin = time.monotonic()
         try:
-            results = IcarusBench(about.top, sources=about.sources).run(
+            results = IcarusBench(about.top, about.config, about.sources).run(
                 about.tests, folder, seed=SEED,
                 extra_env={
                     "PHONG_MODULE": name, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)

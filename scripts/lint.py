@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+from model.config import DEFAULT, TECHNIQUES, Config
 from scripts.synthesis import TECHNOLOGY
 from sim import build
 from sim.build import BuildError
@@ -16,10 +18,14 @@ from sim.build import BuildError
 _BIN = Path(sys.executable).parent
 _RULES = build.ROOT / "scripts" / "verible.rules"
 
+_OLDER = [config for config in TECHNIQUES.values() if config is not DEFAULT]
+#: Configurations besides the default one in which the whole design is looked at.
+CONFIGS = (*_OLDER, *(replace(c, name=f"grey_{c.name}", channels=1) for c in _OLDER))
 
-def verilator(source: Path) -> str:
+
+def verilator(source: Path, config: Config = DEFAULT) -> str:
     """What Verilator's -Wall says of the module in `source` (and of those below it)."""
-    folders = [build.generate_header(), build.RTL, build.SIM]
+    folders = [build.generate_header(config), build.RTL, build.SIM]
     if source.parent == TECHNOLOGY:  # what it has comes first, on models of the chip's blocks
         folders = [TECHNOLOGY, build.SIM / "ecp5", *folders]
     folders = [f"-I{folder}" for folder in folders]
@@ -53,6 +59,7 @@ def main() -> int:
     headers = sorted(build.RTL.glob("*.vh"))
     models = sorted((build.SIM / "ecp5").glob("*.v"))  # their names and style are Lattice's
     said = [verilator(source) for source in designs + benches + models]
+    said += [verilator(build.RTL / "phong_pipeline.v", config) for config in CONFIGS]
     said.append(
         tool("verible-verilog-lint", f"--rules_config={_RULES}", *designs, *headers, *benches)
     )

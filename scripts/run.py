@@ -23,7 +23,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from model import error_budget, metrics, pictures, pruning, reference, report, spans, twin
-from model.config import DEFAULT, Config
+from model.config import DEFAULT, TECHNIQUES, Config
 from model.frame import InputError
 from model.scene import load_scene
 from model.scene_to_spans import front_end
@@ -34,12 +34,14 @@ from sim.run_frame import SimulationError, simulate
 
 @dataclass(frozen=True)
 class Job:
-    """What to run: a scene (`size` None for its own) or, where `spans` is set, a span file.
+    """What to run: a scene (`size` None for its own) or, where `spans` is set, a span file,
+    with the hardware of `config`.
 
     prune: "" for the full design, "1" for what is pruned to this job, else the name or path of a
     scene: what is pruned to that one at the same size.
     """
 
+    config: Config
     scene: str
     spans: Path | None
     size: tuple[int, int] | None
@@ -71,11 +73,12 @@ class Steps:
         self.wall_s[name] = time.perf_counter() - start
 
 
-def parse(argv, config: Config = DEFAULT) -> Job:
+def parse(argv) -> Job:
     """The job that the command line `argv` asks for. Raises InputError."""
     parser = _Parser(prog="run", description=__doc__.partition("\n")[0])
     parser.add_argument("--scene", default="", help="bundled scene, scene file or mesh")
     parser.add_argument("--spans", default="", help="span file to run instead of a scene")
+    parser.add_argument("--technique", default="", help="phong, gouraud or flat")
     parser.add_argument("--size", default="", help="WIDTHxHEIGHT; default: the scene's own")
     parser.add_argument("--fps", default="30", help="frames a second to check for")
     parser.add_argument("--clock-mhz", default="200", help="clock of the hardware")
@@ -84,15 +87,20 @@ def parse(argv, config: Config = DEFAULT) -> Job:
     )
     parser.add_argument("--out", default="", help="folder of the results; default: build/<scene>")
     given = parser.parse_args(argv)
-    scene = given.scene or "teapot"
+    scene, technique = given.scene or "teapot", given.technique or DEFAULT.technique
+    if technique not in TECHNIQUES:
+        raise InputError(f"TECHNIQUE is `{technique}`, not one of {', '.join(TECHNIQUES)}")
+    config = TECHNIQUES[technique]
+    suffix = "" if config is DEFAULT else f"-{config.name}"
     fps, clock = _positive("FPS", given.fps), _positive("CLOCK_MHZ", given.clock_mhz)
     return Job(
+        config=config,
         scene=scene,
         spans=Path(given.spans) if given.spans else None,
         size=parse_size(given.size, config) if given.size else None,
         fps=fps,
         clock_hz=_whole(clock * 1e6),
-        out=Path(given.out or Path("build", Path(given.spans or scene).stem)),
+        out=Path(given.out or Path("build", Path(given.spans or scene).stem + suffix)),
         prune="" if given.prune == "0" else given.prune,
     )
 
@@ -130,14 +138,14 @@ def _whole(value):
     return int(value) if value == int(value) else value
 
 
-def run(job: Job, simulate, steps: Steps, config: Config = DEFAULT) -> dict:
+def run(job: Job, simulate, steps: Steps) -> dict:
     """Do `job` and write its files; returns the report. `simulate`: `sim.run_frame.simulate`.
 
     Raises InputError if the input is wrong or `job.out` no folder to write to, OSError if a file
     cannot be written, BuildError or SimulationError if the simulator does not work.
     """
     with _results(job.out) as folder:
-        return _run(job, simulate, steps, config, folder)
+        return _run(job, simulate, steps, job.config, folder)
 
 
 def _run(job, simulate, steps, config, folder):
@@ -147,9 +155,11 @@ def _run(job, simulate, steps, config, folder):
         else:
             made = front_end(load_scene(job.scene, job.size, config), config, progress)
             frame, exact, degenerate = made.frame, made.exact, made.degenerate_triangles
-        stimulus = folder / "spans"
-        spans.write_spans(stimulus, frame, config)
         built = _built(job, frame, config)
+        if built.values != config.values and (reasons := pruning.missing(frame, built, config)):
+            raise InputError(f"its spans have no place for this scene: {reasons[0]}")
+        stimulus = folder / "spans"
+        spans.write_spans(stimulus, frame, built)
     with steps.step("model") as progress:
         expected = twin.render(frame, config, progress)
         pruned_differ = 0
@@ -160,7 +170,7 @@ def _run(job, simulate, steps, config, folder):
     steps.wall_s |= {"build": simulation.build_s, "simulate": simulation.simulate_s}
     with steps.step("reference"):
         ideal = reference.render(frame, config)
-        scene_ideal = reference.render_exact(frame, exact) if exact else None
+        scene_ideal = reference.render_exact(frame, exact, config) if exact else None
         bound = error_budget.bound_lsb(frame, config)
 
     comparison = metrics.compare(expected, simulation.pixels)
@@ -175,6 +185,7 @@ def _run(job, simulate, steps, config, folder):
         clock_hz=job.clock_hz,
         simulation=simulation,
         comparison=comparison,
+        zero_normals=twin.zero_normals(frame, config),
         error=metrics.error_metrics(codes, ideal[:both]),
         bound_lsb=float(bound),
         pruned_differ=pruned_differ,
@@ -200,7 +211,7 @@ def _run(job, simulate, steps, config, folder):
     if comparison.first:
         print(_where(comparison.first), file=sys.stderr)
         if comparison.first.expected and built == config:
-            print(locate(frame, comparison.first.index), file=sys.stderr)
+            print(locate(frame, comparison.first.index, config), file=sys.stderr)
     return found
 
 

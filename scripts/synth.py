@@ -11,13 +11,13 @@ import sys
 from rich.console import Console
 from rich.table import Table
 
-from model.config import DEFAULT, Config
+from model.config import DEFAULT, TECHNIQUES, Config
 from model.frame import InputError
 from scripts import records, synthesis
 from scripts.records import Row
 from scripts.run import Steps
 
-CONFIGS = {config.name: config for config in (DEFAULT,)}
+CONFIGS = {config.name: config for config in TECHNIQUES.values()}
 
 
 class _Parser(argparse.ArgumentParser):
@@ -64,8 +64,9 @@ def table(report: dict) -> Table:
     out.add_row("MULT18X18D", str(used["dsp"]))
     out.add_row("EBR", str(used["ebr"]))
     out.add_row("Fmax reported, median (best)", f"{reported['median']} ({reported['best']}) MHz")
-    out.add_row(f"clamped by the {report['limit_by']}'s {report['limit_mhz']} MHz",
-                f"{clock['median']} ({clock['best']}) MHz")  # fmt: skip
+    if report["limit_mhz"] is not None:
+        out.add_row(f"clamped by the {report['limit_by']}'s {report['limit_mhz']} MHz",
+                    f"{clock['median']} ({clock['best']}) MHz")  # fmt: skip
     out.add_row("pixels", f"{report['pixels_per_s'] / 1e6:.1f} M/s")
     for size, rate in report["frames_per_s"].items():
         out.add_row(f"frames {size}", f"{rate}/s")

@@ -4,21 +4,26 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from model.config import DEFAULT, TECHNIQUES, Config
 from sim import primitives
 from sim.units import MODULES, bench_source
 
+#: The pipeline with an older technique in place of normals.
+_OLDER = tuple(name for name, config in TECHNIQUES.items() if config is not DEFAULT)
 #: All of them, small modules first. `primitives` holds the small modules, side by side.
-NAMES = ("primitives", *MODULES, "control", "phong_pipeline")
+NAMES = ("primitives", *MODULES, "control", "phong_pipeline", *_OLDER)
 
 
 @dataclass(frozen=True)
 class ModuleBench:
-    """Top level `top`, its text where it is generated, and the Python module of its tests."""
+    """Top level `top`, its text where it is generated, its configuration, and the Python module
+    of its tests."""
 
     name: str
     top: str
     tests: str
     sources: dict[str, str] = field(default_factory=dict)
+    config: Config = DEFAULT
 
 
 def module_bench(name: str) -> ModuleBench:
@@ -30,5 +35,8 @@ def module_bench(name: str) -> ModuleBench:
         top, text = bench_source(name)
         tests = f"tests.modules.{MODULES[name].tests}"
         return ModuleBench(name, top, tests, {f"{top}.v": text})
+    if name in _OLDER:
+        tests = "tests.modules.phong_pipeline"
+        return ModuleBench(name, "pipeline_bench", tests, config=TECHNIQUES[name])
     top = {"control": "control_bench", "phong_pipeline": "pipeline_bench"}[name]
     return ModuleBench(name, top, f"tests.modules.{name}")

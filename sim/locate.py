@@ -11,9 +11,10 @@ from pathlib import Path
 import cocotb
 import numpy as np
 
-from model.config import DEFAULT, Config
+from model.config import DEFAULT, TECHNIQUES, Config
 from model.frame import Frame
 from model.spans import read_spans, write_spans
+from model.twin.intensity_code import intensity_code
 from model.twin.normalizer import normalizer
 from model.twin.phong_pipeline import interpolate
 from model.twin.shading_unit import shading_unit
@@ -28,6 +29,11 @@ def _vectors(frame: Frame, pixel: int, config: Config):
     span, k, _, _, _ = span_walker(frame.spans, pixel, pixel + 1, config)
     normal, _ = interpolate(frame.spans, span, k, config)
     trace: dict = {}
+    if config.technique != "phong":
+        value = normal[: config.values, 0]
+        intensity_code(value, config, trace)
+        yield "intensity_code", [value], trace
+        return
     unit, cosine, lit = normalizer(normal, frame.two_sided, config, trace)
     yield "normalizer", list(normal), trace
     material = frame.spans["material"][span].astype(np.int64)
@@ -41,15 +47,16 @@ async def locate_stage(dut):
     """Run the pixel of where.json through one module; the first stage that differs is written."""
     folder = Path(os.environ["PHONG_VECTORS"])
     where = json.loads((folder / "where.json").read_text())
-    frame = read_spans(folder / "spans", DEFAULT)
-    for module, inputs, expected in _vectors(frame, where["pixel"], DEFAULT):
+    config = TECHNIQUES[where["technique"]]
+    frame = read_spans(folder / "spans", config)
+    for module, inputs, expected in _vectors(frame, where["pixel"], config):
         if module != where["module"]:
             continue
         tb = UnitTB(dut, module)
         if module == "normalizer":
-            await tb.hold(two_sided=int(frame.two_sided))
-        else:
-            half = (code & ((1 << DEFAULT.half_vector.bits) - 1) for code in frame.half_vector)
+            await tb.hold(valid=1, two_sided=int(frame.two_sided))
+        elif module == "shading_unit":
+            half = (code & ((1 << config.half_vector.bits) - 1) for code in frame.half_vector)
             await tb.hold(**dict(zip(("half_x", "half_z"), half, strict=True)))
             await tb.write_table(frame)
         got = await tb.send(*inputs)
@@ -57,26 +64,30 @@ async def locate_stage(dut):
         (folder / "said.json").write_text(json.dumps(said))
 
 
-def locate(frame: Frame, pixel: int, rtl: Path | None = None) -> str:
+def locate(frame: Frame, pixel: int, config: Config = DEFAULT, rtl: Path | None = None) -> str:
     """One line that names the stage at which pixel number `pixel` of `frame` goes wrong in RTL.
 
-    rtl: folder of the design. Builds two benches if they are not there. Raises BuildError.
+    rtl: folder of the design. Builds benches if they are not there. Raises BuildError.
     """
     (BUILD / "run").mkdir(parents=True, exist_ok=True)
     folder = Path(tempfile.mkdtemp(dir=BUILD / "run"))
     try:
-        write_spans(folder / "spans", frame, DEFAULT)
-        for module in ("normalizer", "shading_unit"):
-            (folder / "where.json").write_text(json.dumps({"module": module, "pixel": pixel}))
+        write_spans(folder / "spans", frame, config)
+        phong = config.technique == "phong"
+        modules = ("normalizer", "shading_unit") if phong else ("intensity_code",)
+        where = {"technique": config.technique, "pixel": pixel}
+        for module in modules:
+            (folder / "where.json").write_text(json.dumps(where | {"module": module}))
             top, text = bench_source(module)
             bench = Bench(top, sources={f"{top}.v": text}, **({"rtl": rtl} if rtl else {}))
             bench.run("sim.locate", folder, extra_env={"PHONG_VECTORS": str(folder)})
             said = json.loads((folder / "said.json").read_text())
             if said:
                 return said
+        others = "register_map" if phong else f"{config.technique}_unit"
         return (
-            "normalizer and shading_unit agree with the twin on this pixel's normal: the "
-            "difference is in span_walker, normal_interpolator, register_map or pixel_fifo"
+            f"{' and '.join(modules)} agree with the twin on what is interpolated here: the "
+            f"difference is in span_walker, normal_interpolator, {others} or pixel_fifo"
         )
     finally:
         shutil.rmtree(folder, ignore_errors=True)

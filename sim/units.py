@@ -71,6 +71,13 @@ _X = _sum(_LOG, MUL, 3)
 _LINE = _sum(_X, ROM, L.format("NARROW_MULTIPLIER"), 1)
 
 MODULES = {
+    "intensity_code": Module(
+        ("value",),
+        (
+            Stage("intensity_code.clamp", ("intensity_p1",), "1"),
+            Stage("intensity_code.code", ("colour",), L.format("INTENSITY_CODE")),
+        ),
+    ),
     "inverse_sqrt": Module(
         ("operand",),
         (
@@ -142,8 +149,9 @@ MODULES = {
                 L.format("NORMALIZER"),
             ),
             Stage("normalizer.lit", ("lit",), L.format("NORMALIZER")),
+            Stage("normalizer.zero", ("zero_normal",), L.format("ZERO_NORMAL")),
         ),
-        held=(("two_sided", 1),),
+        held=(("reset", 1), ("two_sided", 1), ("valid", 1)),
         children=(
             Child(
                 "u_inverse_sqrt.gen_lines.u_inverse_sqrt", "inverse_sqrt",

@@ -85,7 +85,8 @@ def test_a_good_run(start, scene, tmp_path):
 
     report = json.loads((tmp_path / "out/report.json").read_text())
     assert list(report) == [
-        "schema", "scene", "size", "pixels", "spans", "illegal_spans", "unsupported", "cycles",
+        "schema", "scene", "technique", "size", "pixels", "spans", "illegal_spans", "unsupported",
+        "zero_normals", "cycles",
         "cycles_per_pixel", "latency_cycles", "stall_cycles", "utilization", "budget", "compare",
         "error", "input_error", "degenerate_triangles", "config", "versions", "wall_s",
     ]  # fmt: skip
@@ -99,7 +100,7 @@ def test_a_good_run(start, scene, tmp_path):
         "met": True, "max_fps": 200e6 / cycles,
     }  # fmt: skip
     assert report["compare"] == {
-        "pixels": pixels, "mismatches": 0, "pruned_model_mismatches": 0
+        "pixels": pixels, "mismatches": 0, "zero_normals": 0, "pruned_model_mismatches": 0
     }  # fmt: skip
     keys = {"max_lsb", "mean_lsb", "rms_lsb", "p999_lsb", "correctly_rounded", "psnr_db"}
     assert set(report["error"]) == keys | {"bound_lsb"} and set(report["input_error"]) == keys
@@ -169,6 +170,9 @@ def test_size_fps_and_clock(start, scene, tmp_path):
         (["--scene=some where/my mesh.v2.obj"], "build/my mesh.v2"),
         (["--spans=a/frame.spans"], "build/frame"),
         (["--spans=a/spans", "--out=-x"], "-x"),
+        (["--scene=cone", "--technique=gouraud"], "build/cone-gouraud"),
+        (["--technique=flat", "--out=here"], "here"),
+        (["--technique="], "build/teapot"),
     ],
 )
 def test_where_the_results_go(arguments, out):
@@ -253,6 +257,7 @@ def assert_refused(found, says):
         ("--clock-mhz=-200", "CLOCK_MHZ is `-200`"),
         ("--clock-mhz=inf", "CLOCK_MHZ is `inf`"),
         ("--clock-mhz=1e308", "CLOCK_MHZ is `1e308`"),
+        ("--technique=Phong", "TECHNIQUE is `Phong`, not one of phong, gouraud, flat"),
         ("--scene=teapto", "teapot"),
         ("--scene=nowhere/scene.toml", "nowhere/scene.toml: no such file"),
         ("--scene=nowhere.obj", "nowhere.obj: no such file"),

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from model.config import DEFAULT as C
+from model.config import TECHNIQUES
 from model.spans import illegal_spans
 from model.twin import render
 from sim.benches import NAMES, module_bench
@@ -47,19 +48,23 @@ def run(bench: Bench, module: str, tests: str, folder, config: str = "default") 
 @pytest.mark.parametrize("name", NAMES)
 def test_module(name, tmp_path):
     about = module_bench(name)
-    run(Bench(about.top, sources=about.sources), name, about.tests, tmp_path)
+    run(Bench(about.top, about.config, about.sources), name, about.tests, tmp_path)
 
 
-def same_pixels(got, frame) -> bool:
-    want = render(frame, C)
+def same_pixels(got, frame, config) -> bool:
+    want = render(frame, config)
     pairs = ((got.x, want.x), (got.y, want.y), (got.rgb, want.rgb), (got.last, want.last))
     return all(np.array_equal(a, b) for a, b in pairs)
 
 
-def test_whole_frames_in_all_regimes():
-    frame, dot = random_frame(SEED, 1000, 40), random_frame(SEED, 1, 1)
-    frame.spans["step"][::50, 1] = C.normal.max  # most of these leave the format
-    illegal = int(illegal_spans(frame, C).sum())
+@pytest.mark.parametrize("technique", TECHNIQUES)
+def test_whole_frames_in_all_regimes(technique):
+    config = TECHNIQUES[technique]
+    frame = random_frame(SEED, 1000, 40, config=config)
+    dot = random_frame(SEED, 1, 1, config=config)
+    if technique != "flat":
+        frame.spans["step"][::50, 1] = C.normal.max  # most of these leave the format
+    illegal = int(illegal_spans(frame, config).sum())
     pixels = int(frame.spans["length"].sum())
     chances = (0, 64, 200)
     jobs = [Job(dot)]
@@ -67,7 +72,7 @@ def test_whole_frames_in_all_regimes():
     # Broken off in the middle, with and without pixels waiting, then whole after a reset.
     for clocks, stall in ((700, 0), (3001, 200), (90, 255)):
         jobs += [Job(frame, stop_after=clocks, stall=stall), Job(frame, reset_first=True)]
-    results = simulate_jobs(jobs)
+    results = simulate_jobs(jobs, config)
     overhead = results[0].cycles - 1
     for job, result in zip(jobs, results, strict=True):
         what = f"idle {job.idle}, stall {job.stall}, {len(job.frame.spans)} spans, seed {SEED}"
@@ -75,7 +80,7 @@ def test_whole_frames_in_all_regimes():
             assert not result.complete, what
             continue
         assert result.complete and result.extra_pixels == 0, what
-        if not same_pixels(result.pixels, job.frame):
+        if not same_pixels(result.pixels, job.frame, config):
             pytest.fail(f"module phong_pipeline, whole frame: pixels differ; {what}")
         assert result.latency_cycles == results[0].latency_cycles, what
         assert result.illegal_spans == (illegal if job.frame is frame else 0), what

@@ -6,7 +6,8 @@ import numpy as np
 
 from model import error_budget, registers, spans
 from model.config import DEFAULT as C
-from sim.build import ROOT, RTL
+from model.config import TECHNIQUES
+from sim.build import ROOT
 from sim.elaborate import instances
 from sim.formal.proofs import PROOFS
 from sim.latency import latencies
@@ -23,6 +24,9 @@ def test_latencies():
         assert f"{block} ({of[block]})" in README, block
     assert f"colour_channel ×3 ({of['colour_channel']})" in README
     assert f"the first comes {of['pixel'] + 3} clocks after its span" in README
+    for older in ("gouraud", "flat"):
+        pixel = latencies(TECHNIQUES[older])["pixel"]
+        assert f"the first pixel {pixel + 3} clocks after its span" in " ".join(README.split())
 
 
 def test_bounds():
@@ -47,7 +51,7 @@ def test_formats():
 
 
 def test_the_multipliers_are_counted():
-    """Each instance is of at most 18 x 18 bits, which the module for the chip checks."""
+    """In the default configuration, as it is elaborated."""
     count = instances()["multiplier"]
     assert f"The default configuration has {count} multipliers" in README
     assert count <= 19

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from model.config import DEFAULT, Format
+from model.config import DEFAULT, TECHNIQUES, Format
 from model.frame import SPAN_DTYPE, Frame, InputError, MaterialTable
 from model.spans import (
     illegal_spans,
@@ -119,6 +119,36 @@ def test_layout_of_the_default_configuration():
     ]  # fmt: skip
     assert word == sum(value << lsb for lsb, _, value in fields)
     assert record_bits(DEFAULT) == 256
+
+
+def test_layout_of_the_older_techniques():
+    """Gouraud's steps, three colours and one; flat: no steps, and no room for one. What a record
+    leaves out comes back."""
+    start, step = (-1, 2, 0x7FFFFFFF), (3, -(2**31), 5)
+    place = [(0, 12, 0xABC), (12, 12, 0x123), (24, 13, 0x1000), (37, 4, 9), (41, 1, 1)]
+
+    def laid_out(config, *values):
+        spans = np.zeros(1, SPAN_DTYPE)
+        spans[0] = span(0xABC, 0x123, 0x1000, (0, 0, 0), (0, 0, 0), 9, True)
+        for what, codes in zip(("start", "step"), values, strict=False):
+            spans[what][0] = codes
+        whole = pack(spans, config)
+        assert unpack(whole, config) == spans
+        codes = [code & 0xFFFFFFFF for value in values for code in value]
+        want = sum(code << 32 * k for k, code in enumerate(codes))
+        want += sum(value << 32 * len(codes) + lsb for lsb, _, value in place)
+        assert int.from_bytes(whole, "big") == want
+        return len(whole)
+
+    gouraud, flat = TECHNIQUES["gouraud"], TECHNIQUES["flat"]
+    grey = {"name": "grey", "channels": 1}
+    assert laid_out(gouraud, start, step) == 32
+    assert laid_out(dataclasses.replace(gouraud, **grey), start[:1], step[:1]) == 16
+    assert laid_out(flat, start) == 32
+    assert laid_out(dataclasses.replace(flat, **grey), start[:1]) == 16
+    for config, wrong in ((flat, (0, 0, 1)), (dataclasses.replace(gouraud, **grey), step)):
+        with pytest.raises(ValueError, match="no place for"):
+            laid_out(config, start[:1], wrong)
 
 
 def test_body_starts_where_the_header_says(tmp_path):
@@ -235,6 +265,11 @@ def setter(key, value):
         ("half_vector", None, "half_vector is not a list"),
         ("two_sided", 1, "two_sided is neither true nor false"),
         ("background", [0, 0, 256], "background[2] is 256"),
+        (
+            "formats.technique",
+            "flat",
+            "formats.technique is flat, but the pipeline is built for ph",
+        ),
         ("materials", {}, "materials is not a list"),
         ("materials", [], "span 0: names a material"),
         ("materials", [7], "materials[0] is not a JSON object"),
@@ -247,7 +282,7 @@ def setter(key, value):
         ("materials.0.exponent", 128 * 512 + 1, "material 1: exponent is 65537"),
         ("materials.0.gloss", 1, "materials[0] has an unknown key `gloss`"),
         ("formats.normal", "s1.16", "formats.normal is s1.16, but the pipeline is built for s1.30"),
-        ("formats", 3, "formats.coordinate_bits is None"),
+        ("formats", 3, "formats.technique is None"),
         ("record.bytes", 64, "record"),
         ("spans", -1, "spans is -1"),
         ("spans", 2, "2 spans of 32 bytes are announced, but 96 bytes follow"),

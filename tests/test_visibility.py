@@ -52,7 +52,7 @@ def count_dots(segments, width=WIDTH, height=HEIGHT):
 
 def visible(triangles, width=WIDTH, height=HEIGHT):
     """The visible segments of all bands, joined."""
-    bands = [s for s, _ in scene_to_spans._visible(triangles, width, height)]
+    bands = [s for s, _ in scene_to_spans.visible(triangles, width, height)]
     fields = ("triangle", "y", "left", "right")
     return Segments(*(np.concatenate([getattr(b, f) for b in bands]) for f in fields))
 
@@ -517,10 +517,10 @@ def test_a_step_of_two_becomes_single_dots():
     )
     segment = Segments(*(np.array([v]) for v in (0, 1, 0, 2)))
     normals = np.array([[(0, 0, 1.0), (1.0, 0, 0), (-1.0, 0, 0)]])
-    triangles.normal = normals  # at line 1: half-way down both edges
+    triangles.value = normals  # at line 1: half-way down both edges
     spans, start, step = scene_to_spans._spans(triangles, segment, DEFAULT, "linear")
     assert len(spans) == 1
-    triangles.normal = np.array([[(0, -1.0, 0), (0, -1.0, 0), (0, 3.0, 0)]])  # step exactly 2
+    triangles.value = np.array([[(0, -1.0, 0), (0, -1.0, 0), (0, 3.0, 0)]])  # step exactly 2
     spans, start, step = scene_to_spans._spans(triangles, segment, DEFAULT, "linear")
     assert spans["x"].tolist() == [0, 1] and spans["length"].tolist() == [1, 1]
     assert spans["material"].tolist() == [3, 3]

@@ -9,8 +9,10 @@ import numpy as np
 
 from ..config import DEFAULT, Config
 from ..frame import Frame
+from .flat_unit import flat_unit
+from .gouraud_unit import gouraud_unit
 from .normal_interpolator import normal_interpolator
-from .normalizer import normalizer
+from .normalizer import normalizer, zero
 from .shading_unit import shading_unit
 from .span_walker import span_walker
 from .unnormalized import unnormalized
@@ -46,6 +48,16 @@ def shade(normal, material, frame: Frame, config: Config = DEFAULT, trace: dict 
     return shading_unit(unit, cosine, lit, material, frame, config, trace)
 
 
+def colours(frame: Frame, span, k, config: Config):
+    """Codes int64[3, n] of pixel `k` of the spans number `span` (int64[n]), by any technique."""
+    if config.technique == "gouraud":
+        return gouraud_unit(frame.spans, span, k, config)
+    if config.technique == "flat":
+        return flat_unit(frame.spans, span, config)
+    normal, _ = interpolate(frame.spans, span, k, config)
+    return shade(normal, frame.spans["material"][span], frame, config)
+
+
 def render(
     frame: Frame, config: Config = DEFAULT, progress: Callable[[float], None] | None = None
 ) -> Pixels:
@@ -57,8 +69,22 @@ def render(
     for first in range(0, total, BLOCK):
         block = slice(first, min(first + BLOCK, total))
         span, k, x[block], y[block], last[block] = span_walker(spans, first, block.stop, config)
-        normal, _ = interpolate(spans, span, k, config)
-        rgb[block] = shade(normal, spans["material"][span], frame, config).T
+        rgb[block] = colours(frame, span, k, config).T
         if progress:
             progress(block.stop / total)
     return Pixels(x, y, rgb, last)
+
+
+def zero_normals(frame: Frame, config: Config = DEFAULT) -> int:
+    """How many pixels of `frame` have the zero vector for a normal (the RTL flags each).
+
+    None where nothing is normalized.
+    """
+    if config.technique != "phong" or config.normal_method == "none":
+        return 0
+    spans, count = frame.spans, 0
+    total = int(np.maximum(spans["length"], 1).sum())
+    for first in range(0, total, BLOCK):
+        span, k, *_ = span_walker(spans, first, min(first + BLOCK, total), config)
+        count += int(zero(interpolate(spans, span, k, config)[0]).sum())
+    return count

@@ -12,6 +12,7 @@ import numpy as np
 
 from model.config import DEFAULT as C
 from model.frame import SPAN_DTYPE, Frame, MaterialTable
+from model.twin.intensity_code import intensity_code
 from model.twin.inverse_sqrt import inverse_sqrt
 from model.twin.normalizer import normalizer
 from model.twin.reflection import reflection
@@ -79,7 +80,7 @@ async def normalizer_random(dut):
     """Random and extreme normals, one- and two-sided."""
     tb = UnitTB(dut, MODULE)
     for two_sided in (0, 1):
-        await tb.hold(two_sided=two_sided)
+        await tb.hold(two_sided=two_sided, valid=1)
         normal = _normals(np.random.default_rng(SEED + two_sided), RANDOM)
         trace = {}
         normalizer(normal, bool(two_sided), C, trace)
@@ -95,6 +96,7 @@ async def normalizer_small(dut):
     normal = np.concatenate([grid << k for k in range(C.normal.bits - 3)], axis=1)
     trace = {}
     normalizer(normal, False, C, trace)
+    await tb.hold(valid=1)
     await tb.check(list(normal), trace)
 
 
@@ -105,6 +107,8 @@ async def normalizer_latency(dut):
     one = C.normal.one
     await tb.check_latency([one, 0, 0], [0, one, one], "normalizer.round")
     await tb.check_latency([one, 0, 0], [one, 0, 1], "normalizer.lit")
+    await tb.hold(valid=1)
+    await tb.check_latency([0, 0, -1], [0, 0, 0], "normalizer.zero")
 
 
 # -- reflection -----------------------------------------------------------------------------------
@@ -238,3 +242,27 @@ async def shading_unit_random(dut):
     trace = {}
     shading_unit(unit, cosine, lit, material, frame, C, trace)
     await tb.check([*unit, cosine, lit, material], trace, NOTE)
+
+
+# -- intensity_code -------------------------------------------------------------------------------
+
+
+@_only("intensity_code")
+async def intensity_code_random(dut):
+    """Every code's borders, the ends of [0, 1] and of the word, and random words."""
+    tb = UnitTB(dut, MODULE)
+    rng = np.random.default_rng(SEED)
+    white = (1 << C.colour_bits) - 1
+    borders = np.round((np.arange(white + 1) + 0.5) / white * C.normal.one).astype(np.int64)
+    near = (borders[:, None] + np.arange(-200, 201)).reshape(-1)
+    value = np.concatenate([near, _edges(C.normal, rng, RANDOM)])
+    trace = {}
+    intensity_code(value, C, trace)
+    assert set(trace["intensity_code.code"][0]) == set(range(white + 1))
+    await tb.check([value], trace, NOTE)
+
+
+@_only("intensity_code")
+async def intensity_code_latency(dut):
+    """One value at a time shows at the stated clock only."""
+    await UnitTB(dut, MODULE).check_latency([0], [C.normal.one], "intensity_code.code")

@@ -5,12 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from model.config import DEFAULT as C
+from model.config import Config
 from model.frame import SPAN_DTYPE, Frame, MaterialTable
 
 
-def random_frame(seed, spans: int, longest: int, two_sided: bool = False) -> Frame:
+def random_frame(
+    seed, spans: int, longest: int, two_sided: bool = False, config: Config = C
+) -> Frame:
     """`spans` legal spans of 1 to `longest` pixels with normals of all lengths and directions
-    (half of them lit throughout), of random materials."""
+    (half of them lit throughout), of random materials; or with intensities within [0, 1] and
+    beyond, where `config` has those."""
     rng = np.random.default_rng(seed)
     table = MaterialTable.empty(C)
     for m in range(C.materials):
@@ -27,6 +31,8 @@ def random_frame(seed, spans: int, longest: int, two_sided: bool = False) -> Fra
     ends >>= rng.integers(0, C.normal.bits, spans)[:, None]
     s["start"] = ends[0]
     s["step"] = (ends[1] - ends[0]) // np.maximum(s["length"] - 1, 4)[:, None]
+    if config.technique == "flat":
+        s["step"] = 0
     s["last"][-1] = True
     angle = rng.random() * 1.5
     hx, hz = C.half_vector.quantize([np.sin(angle), np.cos(angle)])

@@ -1,6 +1,6 @@
 """cocotb tests of phong_pipeline, a clock at a time: streams, stalls, resets, illegal spans.
 
-Run by tests/test_modules.py. Expected pixels come from the twin.
+Run by tests/test_modules.py, for every technique. Expected pixels come from the twin.
 """
 
 from __future__ import annotations
@@ -10,14 +10,15 @@ import os
 import cocotb
 import numpy as np
 
-from model.config import DEFAULT as C
+from model.config import DEFAULT, TECHNIQUES
 from model.frame import SPAN_DTYPE
 from model.registers import writes
 from model.spans import illegal_spans, pack, record_bits, span_fields
-from model.twin import render
+from model.twin import render, zero_normals
 from sim.stream_tb import REGIMES, PipelineTB, pauses
 from tests.modules.frames import random_frame
 
+C = TECHNIQUES.get(os.environ["PHONG_MODULE"], DEFAULT)
 SEED = int(os.environ.get("PHONG_SEED", "75"))
 SPAN_BITS = span_fields(C)[-1].lsb
 LOW, HIGH = C.normal.min, C.normal.max
@@ -60,7 +61,7 @@ async def frame_in_all_regimes(dut, idle, stall):
     await tb.reset()
     for two_sided in (False, True):
         seeds = [SEED, two_sided, *idle.encode(), *stall.encode()]
-        frame = random_frame(seeds, 40, 9, two_sided)
+        frame = random_frame(seeds, 40, 9, two_sided, C)
         await tb.write(writes(frame, C))
         tb.source.idle, tb.sink.stall = pauses(idle, seed), pauses(stall, f"{seed} out")
         _queue(tb, frame)
@@ -73,7 +74,7 @@ async def one_pixel_a_clock(dut):
     """Spans of one pixel, back to back, take as many clocks as there are pixels."""
     tb = PipelineTB(dut)
     await tb.reset()
-    frame = random_frame(SEED, 500, 1)
+    frame = random_frame(SEED, 500, 1, config=C)
     tb.sink.note = f"seed {SEED}"
     await tb.write(writes(frame, C))
     await tb.settle()
@@ -92,7 +93,7 @@ async def long_stall(dut):
     """A stall of any length loses nothing and is followed by a pixel every clock."""
     tb = PipelineTB(dut)
     await tb.reset()
-    frame = random_frame(SEED, 400, 1)
+    frame = random_frame(SEED, 400, 1, config=C)
     tb.sink.note = f"seed {SEED}"
     await tb.write(writes(frame, C))
     _queue(tb, frame)
@@ -108,7 +109,7 @@ async def reset_in_mid_frame(dut, clocks):
     """A reset at any time drops what was at work; the frame after it is whole."""
     tb = PipelineTB(dut)
     await tb.reset()
-    frame = random_frame([SEED, clocks], 60, 5)
+    frame = random_frame([SEED, clocks], 60, 5, config=C)
     tb.sink.note = f"reset after {clocks} clocks, seed {SEED}"
     await tb.write(writes(frame, C))
     for _ in range(2):  # also with pixels waiting at the output
@@ -133,7 +134,7 @@ def _span(start, step, length, x=0):
 
 def _border_spans():
     """Spans at the borders of what is legal, and one unit beyond: (span, legal, what)."""
-    for axis in range(3):
+    for axis in range(C.values if C.technique != "flat" else 0):
         name = "xyz"[axis]
         for start, end, sign in ((LOW, HIGH, 1), (HIGH, LOW, -1)):
             for length in (2, 4, 16):
@@ -168,7 +169,7 @@ async def illegal_spans_are_flagged_once(dut):
     never, and its pixels come nevertheless."""
     tb = PipelineTB(dut)
     await tb.reset()
-    frame = random_frame(SEED, 1, 1)
+    frame = random_frame(SEED, 1, 1, config=C)
     frame.spans = _span(0, 0, 1)
     await tb.write(writes(frame, C))
     everything = []
@@ -199,15 +200,44 @@ async def illegal_spans_are_flagged_once(dut):
 
 
 @cocotb.test()
+@cocotb.parametrize(stall=[cocotb.Param(regime, regime) for regime in REGIMES])
+async def zero_vectors_are_flagged_once(dut, stall):
+    """Each pixel whose normal is the zero vector is flagged once, no other is, also by a reset."""
+    tb = PipelineTB(dut)
+    await tb.reset()
+    frame = random_frame(SEED, 60, 9)
+    one = np.array([1, -3, 1 << 20])
+    crossing = [_span(-k * one, one, 9) for k in range(12)]  # through zero at pixel k
+    nearly = [_span(v, 0, 2) for v in ([0, 0, -1], [-1, 0, 0], [0, 1, 0], LOW)]
+    frame.spans = np.concatenate([frame.spans, _span(0, 0, 7), *crossing, *nearly])
+    await tb.write(writes(frame, C))
+    tb.sink.note = f"stall {stall}, seed {SEED}"
+    tb.sink.stall = pauses(stall, SEED)
+    _queue(tb, frame)
+    await tb.drain()
+    wanted = zero_normals(frame, C)
+    assert wanted >= 16 and len(tb.zero_at) == wanted, f"{len(tb.zero_at)} of {wanted} flags"
+    frame.spans = _span(0, 0, 100)
+    _queue(tb, frame)
+    while not tb.zero_at[wanted:]:
+        await tb.step()
+    await tb.reset(1)
+    for _ in range(100):
+        await tb.step()
+    assert not tb.zero_at, f"flagged {len(tb.zero_at)} times after a reset"
+
+
+@cocotb.test()
 async def longest_spans(dut):
     """A span over the whole counter is legal; one pixel more, or from one pixel later, is not."""
     tb = PipelineTB(dut)
     await tb.reset()
-    frame = random_frame(SEED, 1, 1)
+    frame = random_frame(SEED, 1, 1, config=C)
     frame.spans = _span(0, 0, 1)
     await tb.write(writes(frame, C))
     for length, x, legal in ((C.max_size, 0, True), (C.max_size, 1, False)):
-        frame.spans = _span([0, 0, LOW], [0, 0, (HIGH - LOW) // C.max_size], length, x)
+        step = 0 if C.technique == "flat" else (HIGH - LOW) // C.max_size
+        frame.spans = _span([0, 0, LOW], [0, 0, step], length, x)
         tb.sink.note = f"length {length} from x = {x}"
         tb.illegal_at.clear()
         _queue(tb, frame)

