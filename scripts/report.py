@@ -26,12 +26,14 @@ from plotly.offline import get_plotlyjs
 from model import error_budget
 from model.config import DEFAULT as C
 from model.frame import InputError
-from model.report import failures
+from model.report import SCHEMA, failures
 from model.scene import bundled_scenes
 from model.spans import read_spans
 from scripts import records
 from scripts import run as run_scene
+from scripts.results import SCHEMA as RESULTS
 from scripts.run import Steps
+from scripts.stability import SCHEMA as STABILITY
 from sim.build import BUILD, ROOT
 
 TECHNIQUES = {"phong": "Phong", "gouraud": "Gouraud", "flat": "flat"}
@@ -51,6 +53,13 @@ ERRORS = {
     "rms_lsb": "RMS error, LSB", "max_lsb": "largest error, LSB", "p999_lsb": "99.9 % error, LSB",
     "mean_lsb": "mean error, LSB", "wrong": "share not correctly rounded",
 }  # fmt: skip
+#: Errors of perfect rounding, where there is one figure for it.
+PERFECT = {"rms_lsb": 12**-0.5, "max_lsb": 0.5, "mean_lsb": 0.25}
+
+#: What must be there of the sweep's tables.
+PRECISION = ("method", "label", "cycles", "frame_us", "clock_mhz", "clock_source", "max_lsb",
+             "rms_lsb", "p999_lsb", "mean_lsb", "correctly_rounded", "psnr_db")  # fmt: skip
+TESSELLATION = ("shape", "technique", "level", "triangles", "spans", "cycles", "max_lsb")
 
 
 @dataclass
@@ -80,22 +89,35 @@ def data_uri(path: Path) -> str:
     return "data:image/png;base64," + base64.b64encode(path.read_bytes()).decode()
 
 
-def load(path: Path):
-    """The JSON in `path`, or None if there is none. Raises InputError if it is broken."""
+def load(path: Path, schema: int | None = None):
+    """The JSON in `path`, or None if there is none.
+
+    Raises InputError if it is broken, or of another layout than `schema`.
+    """
     if not path.is_file():
         return None
     try:
-        return json.loads(path.read_text())
+        found = json.loads(path.read_text())
     except ValueError as error:
         raise InputError(f"{path}: not JSON: {error}") from None
+    if schema is not None and found.get("schema") != schema:
+        raise InputError(f"{path}: another version wrote it; remove it, or make it anew")
+    return found
 
 
-def load_csv(path: Path) -> list[dict]:
-    """The rows of `path`, numbers where they are; empty if there is no such file."""
+def load_csv(path: Path, needed: tuple[str, ...]) -> list[dict]:
+    """The rows of `path`, numbers where they are; empty if there is no such file.
+
+    Raises InputError if one of the columns `needed` is missing.
+    """
     if not path.is_file():
         return []
     with path.open(newline="") as file:
-        return [{k: _number(v) for k, v in row.items()} for row in csv.DictReader(file)]
+        rows = [{k: _number(v) for k, v in row.items()} for row in csv.DictReader(file)]
+    for name in needed:
+        if rows and name not in rows[0]:
+            raise InputError(f"{path}: no column `{name}`; remove it, or make it anew")
+    return rows
 
 
 def _number(text):
@@ -129,7 +151,7 @@ def run_missing(names: list[str], build: Path, steps: Steps) -> None:
 def scene_result(name: str, build: Path) -> SceneResult | None:
     """What the runs of `name` left below `build`; None if it was not run."""
     folder = build / name
-    report = load(folder / "report.json")
+    report = load(folder / "report.json", SCHEMA)
     if report is None:
         return None
     views = []
@@ -160,6 +182,17 @@ def _axis(title: str, log: bool = False) -> dict:
     return {"title": {"text": title}, "type": "log" if log else "linear"}
 
 
+def _level(text: str, y: float | None) -> dict:
+    """A dashed line across a plot with a logarithmic axis, and what it is."""
+    if y is None:
+        return {}
+    line = {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": y, "y1": y,
+            "line": {"color": "#d3552b", "dash": "dash"}}  # fmt: skip
+    note = {"xref": "paper", "x": 1, "y": float(np.log10(y)), "text": text, "showarrow": False,
+            "yanchor": "bottom", "xanchor": "right"}  # fmt: skip
+    return {"shapes": [line], "annotations": [note]}
+
+
 def budget_plot(results: dict, scenes: list[str]) -> dict:
     """Cycles of every scene at the common sizes, and the cycles that 30 frames a second leave."""
     sizes = list(dict.fromkeys(row["size"] for row in results["rows"]))
@@ -180,15 +213,10 @@ def budget_plot(results: dict, scenes: list[str]) -> dict:
                 "<extra></extra>",
             )
         )  # fmt: skip
-    available = results["cycles_available"]
-    limit = f"{results['fps']:g} frames/s at {results['clock_hz'] / 1e6:g} MHz"
-    line = {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": available, "y1": available,
-            "line": {"color": "#d3552b", "dash": "dash"}}  # fmt: skip
-    note = {"xref": "paper", "x": 1, "y": np.log10(available), "text": f"budget: {limit}",
-            "showarrow": False, "yanchor": "bottom", "xanchor": "right"}  # fmt: skip
+    limit = f"budget: {results['fps']:g} frames/s at {results['clock_hz'] / 1e6:g} MHz"
     return figure(
-        traces, barmode="group", yaxis=_axis("cycles a frame", True), shapes=[line],
-        annotations=[note],
+        traces, barmode="group", yaxis=_axis("cycles a frame", True),
+        **_level(limit, results["cycles_available"]),
     )  # fmt: skip
 
 
@@ -257,7 +285,7 @@ def precision_plots(rows: list[dict]) -> dict[str, dict]:
                     )  # fmt: skip
             plots[f"{cost}/{error}"] = figure(
                 traces, xaxis=_axis(cost_title, True), yaxis=_axis(error_title, True),
-                hovermode="closest",
+                hovermode="closest", **_level("perfect rounding", PERFECT.get(error)),
             )  # fmt: skip
     return plots
 
@@ -346,9 +374,10 @@ def commit() -> str:
 def page(build: Path = BUILD, record_folder: Path = records.FOLDER) -> str:
     """The page from what is below `build`. Raises InputError or OSError if a file is broken."""
     scenes = [s for name in bundled_scenes() if (s := scene_result(name, build))]
-    results, stability = load(build / "results.json"), load(build / "stability" / "report.json")
-    precision = load_csv(build / "sweep" / "precision.csv")
-    tessellation = load_csv(build / "sweep" / "tessellation.csv")
+    results = load(build / "results.json", RESULTS)
+    stability = load(build / "stability" / "report.json", STABILITY)
+    precision = load_csv(build / "sweep" / "precision.csv", PRECISION)
+    tessellation = load_csv(build / "sweep" / "tessellation.csv", TESSELLATION)
     plots = {
         "precision": precision_plots(precision),
         "tessellation": tessellation_plots(tessellation),

@@ -73,7 +73,7 @@ def build(tmp_path_factory):
     row = {"scene": "sphere", "size": "160×120", "pixels": 9000, "spans": 500, "cycles": 9075,
            "fps": 22000.0, "mismatches": 0, "max_lsb": 0.5, "bound_lsb": 0.55}  # fmt: skip
     (build / "results.json").write_text(json.dumps(
-        {"fps": 30, "clock_hz": 200e6, "cycles_available": 6_666_666, "rows": [row]}
+        {"schema": 1, "fps": 30, "clock_hz": 200e6, "cycles_available": 6_666_666, "rows": [row]}
     ))  # fmt: skip
     case = {"case": "a case", "extreme": "much", "expected": "well", "pixels": 5, "max_lsb": 0.5,
             "bound_lsb": 0.6, "mismatches": 0, "zero_normals": 1, "failures": [],
@@ -87,7 +87,7 @@ def build(tmp_path_factory):
     ]  # fmt: skip
     (build / "stability").mkdir()
     (build / "stability" / "report.json").write_text(json.dumps({
-        "rows": [case, bad], "errors": errors, "amm_2012_at_20": 0.00141,
+        "schema": 2, "rows": [case, bad], "errors": errors, "amm_2012_at_20": 0.00141,
         "powers": [{"n": 20, "codes": 4, "max_error": 1e-5, "at_versine": 0, "bound": 2e-5}],
     }))  # fmt: skip
     return build
@@ -135,11 +135,20 @@ def test_the_pareto_front():
 
 
 def test_a_broken_file_is_named(build, tmp_path, capsys, monkeypatch):
-    (tmp_path / "results.json").write_text("{")
     monkeypatch.setattr(report, "run_missing", lambda *_: None)
-    assert report.main(tmp_path) == 2
-    assert capsys.readouterr().err.startswith(f"Error: {tmp_path / 'results.json'}: not JSON")
-    assert not (tmp_path / "report").exists()
+    (tmp_path / "stability").mkdir()
+    (tmp_path / "sweep").mkdir()
+    for name, text, said in (
+        ("results.json", "{", "not JSON"),
+        ("stability/report.json", '{"schema": 1, "rows": []}', "another version wrote it"),
+        ("sweep/precision.csv", "method,label\na,b\n", "no column `cycles`"),
+    ):
+        (tmp_path / name).write_text(text)
+        assert report.main(tmp_path) == 2
+        lines = capsys.readouterr().err.splitlines()
+        assert len(lines) == 1 and lines[0].startswith(f"Error: {tmp_path / name}: {said}")
+        assert not (tmp_path / "report").exists()
+        (tmp_path / name).unlink()
 
 
 def test_scenes_without_a_current_result_are_run(build, monkeypatch, capsys):
