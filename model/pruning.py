@@ -189,21 +189,23 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
         "specular", shiny.any(), _some(int(shiny.sum()), count, "W is other than 0"),
         "reflection, power, W(i), the unit normal's x and y",
     )  # fmt: skip
+    tables = config.power_method == "tables"
     power = decide(
-        "power_function", (n != one).any(),
+        "power_function", (n != one).any() or (specular and config.power_method == "schlick"),
         _some(int((n != one).sum()), len(n), "n is other than 1") if specular else "no highlight",
-        "tables of log and exp, product with n",
+        "tables of log and exp, product with n" if tables else f"power by {config.power_method}",
     )  # fmt: skip
+    none = "no power" if not power else f"power by {config.power_method} has none"
     decide(
-        "power_bypass", power and (n == one).any(),
-        _some(int((n == one).sum()), len(n), "n is 1") if power else "n is 1 or nothing",
+        "power_bypass", power and ((n == one).any() or not tables),
+        _some(int((n == one).sum()), len(n), "n is 1") if power and tables else none,
         "cos(s) kept beside the power",
     )  # fmt: skip
     least, limit = min(n[n != one], default=0), vanishing_exponent(config)
     decide(
-        "log_octaves", power and least < limit,
-        f"smallest n is {config.exponent.real(least):g}; "
-        f"from {config.exponent.real(limit):g} on, 2^-n is 0" if power else "no power",
+        "log_octaves", power and (least < limit or not tables),
+        f"smallest n is {config.exponent.real(least):g}; from {config.exponent.real(limit):g} on, "
+        "2^-n is 0" if power and tables else none,
         "leading ones of 1 - cos(s) and their shifter",
     )  # fmt: skip
     varies = (f.weight != f.weight[:, :1]).any(axis=1)
