@@ -285,6 +285,14 @@ def test_each_feature_alone(feature):
     check(frame, without(feature, frame))
 
 
+@pytest.mark.parametrize("two_sided", [False, True])
+def test_holding_unlit_normals_changes_no_pixel(two_sided):
+    frame = plain()
+    frame.two_sided = two_sided
+    config = dataclasses.replace(C, name="hold", hold_unlit=True)
+    check(frame, config, [Job(frame, idle=100, stall=64, seed=SEED)])
+
+
 @pytest.mark.parametrize("scene", bundled_scenes())
 def test_bundled_scene(scene):
     frame = front_end(load_scene(scene, SIZE)).frame
