@@ -81,7 +81,7 @@ def main() -> int:
             Row(
                 "the same where pixels turned away from the light hold the datapath (`hold_unlit`)",
                 held,
-                "one clock and 98 registers more; not in the default configuration",
+                "one clock and about 120 registers more; not in the default configuration",
             ),
         ],
     )
