@@ -47,6 +47,7 @@ help: ## this list
 	@echo 'make bench    clocks a second of the simulation, frames a second of the model'
 	@echo 'make synth    synthesis, place and route for an ECP5; build/synth/CONFIG/report.json'
 	@echo '                CONFIG=default  a configuration by name'
+	@echo '                SCENE=torus     only what this scene needs of it (see make prune)'
 	@echo '                GRADE=6         speed grade of the chip, 6 or 8'
 	@echo '                SEEDS=3         how many placements to try; the median counts'
 	@echo '                GATES=1         count gate equivalents in standard cells, too (minutes)'
@@ -114,7 +115,8 @@ sweep: setup
 	@$(PYTHON) -m scripts.sweep --area=$(call quote,$(AREA)) --route=$(call quote,$(ROUTE))
 
 synth: setup
-	@$(PYTHON) -m scripts.synth --config=$(call quote,$(CONFIG)) --grade=$(call quote,$(GRADE)) \
+	@$(PYTHON) -m scripts.synth --config=$(call quote,$(CONFIG)) \
+	  $(if $(filter-out file,$(origin SCENE)),--scene=$(call quote,$(SCENE))) --grade=$(call quote,$(GRADE)) \
 	  --seeds=$(call quote,$(SEEDS)) --gates=$(call quote,$(GATES))
 
 netlist: setup
