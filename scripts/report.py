@@ -195,7 +195,7 @@ def scene_result(name: str, build: Path) -> SceneResult | None:
 
 def title(technique: str) -> str:
     """The name of a technique: some are those of people."""
-    return technique if technique == "flat" else technique.capitalize()
+    return technique.capitalize() if technique in ("phong", "gouraud") else technique
 
 
 # -- plots -----------------------------------------------------------------------------------------
