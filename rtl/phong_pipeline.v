@@ -20,6 +20,11 @@ module phong_pipeline #(
     parameter UNIT_BITS        = `PHONG_UNIT_BITS,
     parameter COSINE_BITS      = `PHONG_COSINE_BITS,
     parameter SPAN_BITS        = `PHONG_SPAN_BITS,
+    parameter INTERPOLATE_X    = `PHONG_INTERPOLATE_X,
+    parameter INTERPOLATE_Y    = `PHONG_INTERPOLATE_Y,
+    parameter INTERPOLATE_Z    = `PHONG_INTERPOLATE_Z,
+    parameter IDLE_STEP_BITS     = `PHONG_IDLE_STEP_BITS,
+    parameter IDLE_MATERIAL_BITS = `PHONG_IDLE_MATERIAL_BITS,
     parameter PIXEL_BITS       = 2 * COORDINATE_BITS + 3 * COLOUR_BITS
 ) (
     input wire clk,
@@ -72,7 +77,7 @@ module phong_pipeline #(
       .span_x(span_x),
       .span_y(span_y),
       .span_length(span_length),
-      .span_material(span_material),
+      .span_material(span_material & ({MATERIAL_BITS{1'b1}} >> IDLE_MATERIAL_BITS)),
       .span_last(s_axis_tlast),
       .load(load),
       .advance(advance),
@@ -98,6 +103,7 @@ module phong_pipeline #(
       wire [2:0] write_ambient, write_diffuse;
       wire [MATERIAL_BITS+INDEX_BITS-1:0] table_address;
       wire [2*COEFFICIENT_BITS:0] table_word;
+      wire unsupported_write, unsupported_span;
 
       register_map u_register_map (
           .clk(clk),
@@ -113,8 +119,10 @@ module phong_pipeline #(
           .write_diffuse(write_diffuse),
           .table_address(table_address),
           .table_word(table_word),
-          .unsupported(unsupported)
+          .unsupported(unsupported_write)
       );
+
+      assign unsupported = unsupported_write | unsupported_span;
 
       // ---- three interpolators in parallel ----
       wire [NORMAL_BITS-1:0] start_x, start_y, start_z;
@@ -125,12 +133,39 @@ module phong_pipeline #(
       assign {step_z, step_y, step_x, start_z, start_y, start_x} = span_values;
       assign overflow = overflow_x | overflow_y | overflow_z;
 
+      // Slopes that no span has in this build are cut off; the guard finds spans that have them.
+      wire [NORMAL_BITS-1:0] slope_x =
+          INTERPOLATE_X ? $signed(step_x << IDLE_STEP_BITS) >>> IDLE_STEP_BITS : 0;
+      wire [NORMAL_BITS-1:0] slope_y =
+          INTERPOLATE_Y ? $signed(step_y << IDLE_STEP_BITS) >>> IDLE_STEP_BITS : 0;
+      wire [NORMAL_BITS-1:0] slope_z =
+          INTERPOLATE_Z ? $signed(step_z << IDLE_STEP_BITS) >>> IDLE_STEP_BITS : 0;
+
+      span_guard u_span_guard (
+          .clk(clk),
+          .reset(reset),
+          .taken(s_axis_tvalid & s_axis_tready),
+          .step_x(step_x),
+          .step_y(step_y),
+          .step_z(step_z),
+          .length(span_length),
+          .material(span_material),
+          .pixel_valid(pixel_valid),
+          .at_end(load),
+          .pixel_x(pixel_x),
+          .pixel_y(pixel_y),
+          .normal_x(normal_x),
+          .normal_y(normal_y),
+          .normal_z(normal_z),
+          .unsupported(unsupported_span)
+      );
+
       normal_interpolator u_interpolator_x (
           .clk(clk),
           .load(load),
           .advance(advance),
           .start(start_x),
-          .step(step_x),
+          .step(slope_x),
           .value(normal_x),
           .overflow(overflow_x)
       );
@@ -140,7 +175,7 @@ module phong_pipeline #(
           .load(load),
           .advance(advance),
           .start(start_y),
-          .step(step_y),
+          .step(slope_y),
           .value(normal_y),
           .overflow(overflow_y)
       );
@@ -150,7 +185,7 @@ module phong_pipeline #(
           .load(load),
           .advance(advance),
           .start(start_z),
-          .step(step_z),
+          .step(slope_z),
           .value(normal_z),
           .overflow(overflow_z)
       );
