@@ -94,7 +94,7 @@ class SceneResult:
     error_map: str
     failures: list[str]
     budget: list[error_budget.Row] = field(default_factory=list)
-    features: list[Row] = field(default_factory=list)
+    features: dict[str, Row] = field(default_factory=dict)
 
 
 def data_uri(path: Path) -> str:
@@ -189,7 +189,8 @@ def scene_result(name: str, build: Path) -> SceneResult | None:
     budget = [error_budget.rows(material, frame, C) for material in used]
     worst = max(budget, key=lambda rows: rows[-1].bound, default=[])
     return SceneResult(
-        name, report, views, data_uri(own / "error.png"), failures(report), worst, prune(frame)[1]
+        name, report, views, data_uri(own / "error.png"), failures(report), worst,
+        {row.feature: row for row in prune(frame)[1]},
     )  # fmt: skip
 
 
@@ -216,9 +217,9 @@ def _level(text: str, y: float | None) -> dict:
     if y is None:
         return {}
     line = {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": y, "y1": y,
-            "line": {"color": "#d3552b", "dash": "dash"}}  # fmt: skip
-    note = {"xref": "paper", "x": 1, "y": float(np.log10(y)), "text": text, "showarrow": False,
-            "yanchor": "bottom", "xanchor": "right"}  # fmt: skip
+            "line": {"color": "#d3552b", "dash": "dash"}, "layer": "below"}  # fmt: skip
+    note = {"xref": "paper", "x": 0, "y": float(np.log10(y)), "text": text, "showarrow": False,
+            "yanchor": "bottom", "xanchor": "left"}  # fmt: skip
     return {"shapes": [line], "annotations": [note]}
 
 
