@@ -12,6 +12,7 @@ import base64
 import csv
 import itertools
 import json
+import os
 import subprocess
 import sys
 from contextlib import redirect_stdout
@@ -463,7 +464,7 @@ def main(build: Path = BUILD) -> int:
     except (InputError, OSError) as error:
         print(f"Error: {error}", file=sys.stderr)
         return 2
-    print(f"{path.relative_to(ROOT)}: {path.stat().st_size / 1e6:.1f} MB, opens in any browser")
+    print(f"{os.path.relpath(path)}: {path.stat().st_size / 1e6:.1f} MB, opens in any browser")
     return 0
 
 

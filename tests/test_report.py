@@ -157,6 +157,13 @@ def test_a_broken_file_is_named(build, tmp_path, capsys, monkeypatch):
         (tmp_path / name).unlink()
 
 
+def test_the_page_is_one_file(build, capsys, monkeypatch):
+    monkeypatch.setattr(report, "run_missing", lambda *_: None)
+    assert report.main(build) == 0
+    assert [p.name for p in (build / "report").iterdir()] == ["index.html"]
+    assert "report/index.html: " in capsys.readouterr().out
+
+
 def test_scenes_without_a_current_result_are_run(build, monkeypatch, capsys):
     ran = []
     monkeypatch.setattr(report.run_scene, "main", lambda argv: ran.append(" ".join(argv[:2])) or 0)
