@@ -194,6 +194,10 @@ class Config:
     quadratic_slope_bits: int = 18  # units of 2**-23 a segment
     quadratic_curve_bits: int = 14  # units of 2**-23 a segment squared
     start_index_bits: int = 6  # constants in each of [1, 2) and [2, 4), in `root`
+    power_method: str = choice("tables", "squaring", "schlick")  # of cos(s)**n
+    reciprocal_index_bits: int = 7  # lines of 1/m, 1 <= m < 2
+    reciprocal_value_bits: int = 20  # table value: u0.20
+    reciprocal_slope_bits: int = 14  # units of 2**-20 a segment
 
     # -- derived -----------------------------------------------------------------------------------
     @property

@@ -120,6 +120,41 @@
   + `PHONG_ROUND_SATURATE_LATENCY    /* exp shift: round */ \
   + `PHONG_POWER_BYPASS )            /* bypass */
 
+// The other methods for cos(s)^n.
+`define PHONG_SQUARING_STAGE_LATENCY \
+  ( `PHONG_MULTIPLIER_LATENCY        /* products */ \
+  + `PHONG_ROUND_SATURATE_LATENCY \
+  + 1 )                              /* choice */
+
+`define PHONG_POWER_SQUARING_LATENCY \
+  ( `PHONG_SPECULAR_COSINE_LATENCY \
+  + (`PHONG_EXPONENT_BITS - `PHONG_EXPONENT_FRACTION - 1) * `PHONG_SQUARING_STAGE_LATENCY \
+  + 1 )                              /* last: choice */
+
+`define PHONG_POWER_SCHLICK_LATENCY \
+  ( `PHONG_ROUND_SATURATE_LATENCY    /* denominator: versine */ \
+  + `PHONG_MULTIPLIER_LATENCY        /* denominator: times n - 1 */ \
+  + 1                                /* denominator: plus 1 */ \
+  + `PHONG_LEADING_ZEROS_LATENCY     /* normalize */ \
+  + `PHONG_LEFT_SHIFTER_LATENCY \
+  + `PHONG_ROM_LATENCY               /* reciprocal: lookup */ \
+  + `PHONG_MULTIPLIER_LATENCY        /* reciprocal: slope * offset */ \
+  + 1                                /* reciprocal: subtract */ \
+  + `PHONG_ROUND_SATURATE_LATENCY \
+  + `PHONG_MULTIPLIER_LATENCY        /* quotient: product */ \
+  + 2                                /* quotient: shift twice */ \
+  + `PHONG_ROUND_SATURATE_LATENCY )
+
+`define PHONG_SPECULAR_POWER_METHOD_LATENCY \
+  ( `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_TABLES ? `PHONG_SPECULAR_POWER_LATENCY : \
+    `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_SQUARING ? `PHONG_POWER_SQUARING_LATENCY : \
+    `PHONG_POWER_SCHLICK_LATENCY )
+
+// From the versine to where its exponent is wanted.
+`define PHONG_EXPONENT_LATENCY \
+  ( `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_TABLES ? `PHONG_LOG_LATENCY : \
+    `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_SQUARING ? `PHONG_SPECULAR_COSINE_LATENCY - 1 : 0 )
+
 `define PHONG_SPECULAR_WEIGHT_LATENCY \
   ( `PHONG_RAM_LATENCY               /* lookup */ \
   + `PHONG_MULTIPLIER_LATENCY        /* interpolate: step * offset */ \
@@ -146,7 +181,7 @@
   + 2 )                              /* code: times 255, round */
 
 `define PHONG_POWER_LATENCY \
-  ( `PHONG_POWER_FUNCTION ? `PHONG_SPECULAR_POWER_LATENCY : `PHONG_SPECULAR_COSINE_LATENCY )
+  ( `PHONG_POWER_FUNCTION ? `PHONG_SPECULAR_POWER_METHOD_LATENCY : `PHONG_SPECULAR_COSINE_LATENCY )
 
 // From the unit normal to the products of eq. (3).
 `define PHONG_SPECULAR_LATENCY \

@@ -55,7 +55,7 @@ module shading_unit #(
 
   // Clocks from the input to where a thing is needed.
   localparam POWER_AT = `PHONG_SPECULAR_LATENCY;
-  localparam EXPONENT_AT = `PHONG_REFLECTION_LATENCY + `PHONG_LOG_LATENCY;
+  localparam EXPONENT_AT = `PHONG_REFLECTION_LATENCY + `PHONG_EXPONENT_LATENCY;
   localparam WEIGHT_AT = POWER_AT - `PHONG_SPECULAR_WEIGHT_LATENCY;
 
   // Clocks from the input to where the material is looked up, in this order.
@@ -168,7 +168,7 @@ module shading_unit #(
           );
         end
 
-        specular_power u_specular_power (
+        specular_power_method u_specular_power (
             .clk(clk),
             .versine(versine),
             .exponent(exponent),

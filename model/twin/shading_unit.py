@@ -11,7 +11,7 @@ from .. import fixed
 from ..config import Config
 from .reflection import reflection
 from .specular_cosine import specular_cosine
-from .specular_power import specular_power
+from .specular_power_method import specular_power_method
 from .specular_weight import constant_weight, specular_weight
 
 
@@ -58,7 +58,7 @@ def shading_unit(unit, cosine, lit, material, frame, config: Config, trace: dict
         v = reflection(unit, half_vector, config, trace)
         if config.power_function:
             n = config.constant_exponent or table.exponent[material]
-            power = specular_power(v, np.broadcast_to(n, v.shape), config, trace)
+            power = specular_power_method(v, np.broadcast_to(n, v.shape), config, trace)
         else:
             power = specular_cosine(v, config, trace)
         if config.weight_function:
