@@ -37,6 +37,11 @@ help: ## this list
 	@echo 'make test     lint, then all tests'
 	@echo 'make lint     Verilator -Wall and Verible on rtl/ and sim/, Ruff on Python'
 	@echo 'make results  the README'"'"'s table of results, measured anew'
+	@echo 'make report      one page of all results: build/report/index.html'
+	@echo 'make test-report the page in headless Chromium: what it draws, its controls'
+	@echo 'make test-all    make test and make test-report in one'
+	@echo 'make stability   stiff and extreme cases, a row each: error, bound, RTL against model'
+	@echo 'make adversarial search for the input with the largest error; KEEP=1 keeps a worse one'
 	@echo 'make bench    clocks a second of the simulation, frames a second of the model'
 	@echo 'make synth    synthesis, place and route for an ECP5; build/synth/CONFIG/report.json'
 	@echo '                CONFIG=default  a configuration by name'
@@ -78,6 +83,24 @@ lint: setup
 
 bench: setup
 	@$(PYTHON) -m scripts.bench
+
+.PHONY: report test-report test-all stability adversarial
+report: setup
+	@$(PYTHON) -m scripts.report
+
+test-report: setup
+	@command -v chromium >/dev/null || \
+	  { echo 'The report page is tested in Chromium: apt-get install chromium' >&2; exit 2; }
+	@$(PYTHON) -m pytest -m browser
+
+test-all: lint
+	@$(PYTHON) -m pytest -m ''
+
+stability: setup
+	@$(PYTHON) -m scripts.stability
+
+adversarial: setup
+	@$(PYTHON) -m scripts.adversarial $(if $(KEEP),--keep)
 
 results: setup
 	@$(PYTHON) -m scripts.results

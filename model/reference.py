@@ -17,7 +17,7 @@ def shade(normal, cp_d, cp_rest, weight, exponent, eye, two_sided: bool):
 
     normal: float64[n, 3], any length, light frame. cp_d, cp_rest: float64[n, 3], Cp d and
     Cp (1 - d). weight: float64[n, P], W at equally spaced Zn. exponent: float64[n].
-    eye: float64[3], unit. A normal turned away from the light, or zero, leaves Cp d.
+    eye: float64[3] or [n, 3], unit. A normal turned away from the light, or zero, leaves Cp d.
     """
     if two_sided:
         normal = np.where(normal[:, 2:] < 0, -normal, normal)
@@ -25,7 +25,7 @@ def shade(normal, cp_d, cp_rest, weight, exponent, eye, two_sided: bool):
     length = np.sqrt((normal**2).sum(axis=1))
     n = normal / np.where(length > 0, length, 1)[:, None]
     cos_i = n[:, 2]
-    cos_s = np.maximum(2 * cos_i * (n @ eye) - eye[2], 0)
+    cos_s = np.maximum(2 * cos_i * (n * eye).sum(axis=1) - eye[..., 2], 0)
     points = weight.shape[1]
     place = np.clip(cos_i, 0, 1) * (points - 1)
     left = np.minimum(place.astype(np.int64), points - 2)
@@ -45,10 +45,22 @@ def _pixels(spans, start, step):
 
 
 def eye_of(half_vector) -> np.ndarray:
-    """The unit vector u, float64[3], whose half-way vector to the light is along (hx, 0, hz)."""
-    h = np.array([half_vector[0], 0, half_vector[1]], dtype=np.float64)
-    h /= np.linalg.norm(h)
-    return 2 * h[2] * h - np.array([0, 0, 1.0])
+    """The unit vector u, float64[..., 3], whose half-way vector to the light is along (hx, 0, hz).
+
+    half_vector: hx and hz, numbers or arrays[...].
+    """
+    hx, hz = np.asarray(half_vector, np.float64)
+    h = np.stack([hx, np.zeros_like(hx), hz], axis=-1)
+    h /= np.linalg.norm(h, axis=-1, keepdims=True)
+    return 2 * h[..., 2:] * h - np.array([0, 0, 1.0])
+
+
+def zero_normals(frame: Frame) -> int:
+    """How many pixels have no direction: their interpolated normal is zero."""
+    normal, _ = _pixels(
+        frame.spans, frame.spans["start"].astype(float), frame.spans["step"].astype(float)
+    )
+    return int((normal == 0).all(axis=1).sum())
 
 
 def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:

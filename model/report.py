@@ -27,6 +27,7 @@ def make_report(
     clock_hz: float,
     simulation,
     comparison: Comparison,
+    zero_normals: int,
     error: dict,
     bound_lsb: float,
     pruned_differ: int,
@@ -37,9 +38,10 @@ def make_report(
     """The contents of `report.json`, ready for JSON: None stands for what is not defined.
 
     simulation: `sim.run_frame.SimResult`; its counters give all cycles. error, input_error: from
-    `metrics.error_metrics`; the second is None where there is no scene behind the spans. fps in
-    frames and clock_hz in clocks a second; wall_s in seconds. pruned_differ: pixels in which the
-    model of what was built differs from that of the full design.
+    `metrics.error_metrics`; the second is None where there is no scene behind the spans.
+    zero_normals: what the model counts. fps in frames and clock_hz in clocks a second; wall_s in
+    seconds. pruned_differ: pixels in which the model of what was built differs from that of the
+    full design.
     """
     pixels, cycles = len(simulation.pixels.x), simulation.cycles
     mismatches = comparison.mismatches + simulation.extra_pixels
@@ -53,6 +55,7 @@ def make_report(
         "spans": len(frame.spans),
         "illegal_spans": simulation.illegal_spans,
         "unsupported": simulation.unsupported,
+        "zero_normals": simulation.zero_normals,
         "cycles": cycles,
         "cycles_per_pixel": cycles / pixels if pixels else None,
         "latency_cycles": simulation.latency_cycles,
@@ -70,14 +73,20 @@ def make_report(
             "pixels": comparison.pixels,
             "mismatches": mismatches,
             "pruned_model_mismatches": pruned_differ,
+            "zero_normals": zero_normals,
         },
         "error": error | {"bound_lsb": bound_lsb},
         "input_error": input_error,
         "degenerate_triangles": degenerate_triangles,
         "config": config.as_dict(),
-        "versions": {"python": platform.python_version()} | {n: version(n) for n in _VERSIONS},
+        "versions": versions(),
         "wall_s": wall_s,
     }
+
+
+def versions() -> dict[str, str]:
+    """The versions of what took part."""
+    return {"python": platform.python_version()} | {name: version(name) for name in _VERSIONS}
 
 
 def failures(report: dict) -> list[str]:
@@ -96,6 +105,11 @@ def failures(report: dict) -> list[str]:
     if report["unsupported"]:
         lines.append(
             f"{report['unsupported']} spans or register writes need what this build leaves out"
+        )
+    if report["zero_normals"] != compare["zero_normals"]:
+        lines.append(
+            f"the RTL flags {report['zero_normals']} zero vectors, "
+            f"the model {compare['zero_normals']}"
         )
     if not budget["met"]:
         lines.append(
@@ -138,6 +152,8 @@ def table(report: dict) -> Table:
         )
     if report["unsupported"]:
         rows.add_row("unsupported", count(report["unsupported"]), "spans or register writes")
+    if report["zero_normals"]:
+        rows.add_row("zero vectors", count(report["zero_normals"]), "pixels without a direction")
     if report["degenerate_triangles"]:
         rows.add_row("triangles skipped", count(report["degenerate_triangles"]), "without area")
     rows.add_section()

@@ -59,6 +59,12 @@
   + `PHONG_LEFT_SHIFTER_LATENCY \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
+// From a normal to zero_normal.
+`define PHONG_ZERO_NORMAL_LATENCY \
+  ( 1                                /* significant bits of three components */ \
+  + `PHONG_LEADING_ZEROS_LATENCY \
+  + 1 )
+
 `define PHONG_NORMALIZER_LATENCY \
   ( `PHONG_ALIGN_LATENCY \
   + `PHONG_MULTIPLIER_LATENCY        /* squares */ \

@@ -2,7 +2,7 @@
 // hardware to normalize the outputs of the interpolators".
 // The components are shifted together until the largest fills the word, so that a short normal
 // loses no more direction than a long one; then m / |m| with one 1/sqrt and three products.
-// One normal a clock; latency below. The zero vector gives zeros, not lit.
+// One normal a clock; latency below. The zero vector gives zeros, not lit, and is flagged.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
@@ -24,7 +24,9 @@ module normalizer #(
     parameter LATENCY           = `PHONG_NORMALIZER_LATENCY
 ) (
     input  wire                   clk,
+    input  wire                   reset,      // synchronous; of zero_normal alone
     input  wire                   two_sided,  // 1: shade |Zn|
+    input  wire                   valid,      // the normal is that of a pixel; for zero_normal
     input  wire [NORMAL_BITS-1:0] x,          // s1.30, normal, light frame
     input  wire [NORMAL_BITS-1:0] y,
     input  wire [NORMAL_BITS-1:0] z,
@@ -32,7 +34,8 @@ module normalizer #(
     output wire [  UNIT_BITS-1:0] unit_y,
     output wire [  UNIT_BITS-1:0] unit_z,
     output wire [COSINE_BITS-1:0] cosine,     // u0.18, |Zn| = cos(i)
-    output wire                   lit         // Zn > 0 (two-sided: Zn not 0), exact
+    output wire                   lit,        // Zn > 0 (two-sided: Zn not 0), exact
+    output reg                    zero_normal // for one clock, early: the zero vector
 );
 
   localparam SHIFT_BITS   = $clog2(NORMAL_BITS);
@@ -75,6 +78,29 @@ module normalizer #(
       .clk  (clk),
       .word (ones_p1),
       .count(shift_p3)
+  );
+
+  // ---- zero: no bit below the signs, and none of the signs ----
+  localparam [SHIFT_BITS-1:0] NO_BIT = NORMAL_BITS[SHIFT_BITS-1:0] - 1'b1;
+
+  reg sign_p1;
+  wire sign_p3;
+  reg [SHIFT_LATENCY-1:0] in_flight;
+
+  always @(posedge clk) begin
+    sign_p1 <= x[NORMAL_BITS-1] | y[NORMAL_BITS-1] | z[NORMAL_BITS-1];
+    zero_normal <= ~reset & in_flight[SHIFT_LATENCY-1] & ~sign_p3 & (shift_p3 == NO_BIT);
+    if (reset) in_flight <= {SHIFT_LATENCY{1'b0}};
+    else in_flight <= {in_flight[SHIFT_LATENCY-2:0], valid};
+  end
+
+  delay #(
+      .BITS  (1),
+      .CYCLES(SHIFT_LATENCY - 1)
+  ) u_sign (
+      .clk(clk),
+      .in (sign_p1),
+      .out(sign_p3)
   );
 
   // ---- align, sum_of_squares, scale, round: the same for the three components ----

@@ -45,7 +45,8 @@ module phong_pipeline #(
     output wire                  m_axis_tlast,   // last pixel of the frame
 
     output wire illegal_span,  // for one clock: a span left its word, the counter, or was empty
-    output wire unsupported  // for one clock: a word or a span needs what this build leaves out
+    output wire zero_normal,   // for one clock: a pixel's normal is the zero vector
+    output wire unsupported    // for one clock: a word or a span needs what this build leaves out
 );
 
   // ---- spans to pixels ----
@@ -173,10 +174,13 @@ module phong_pipeline #(
             .cosine(cosine),
             .lit(lit)
         );
+        assign zero_normal = 1'b0;  // nobody divides by its length
       end else begin : gen_normalized
         normalizer u_normalizer (
             .clk(clk),
+            .reset(reset),
             .two_sided(two_sided),
+            .valid(pixel_valid),
             .x(normal_x),
             .y(normal_y),
             .z(normal_z),
@@ -184,7 +188,8 @@ module phong_pipeline #(
             .unit_y(unit_y),
             .unit_z(unit_z),
             .cosine(cosine),
-            .lit(lit)
+            .lit(lit),
+            .zero_normal(zero_normal)
         );
       end
 
@@ -219,6 +224,7 @@ module phong_pipeline #(
           .blue(blue)
       );
     end else if (TECHNIQUE == `PHONG_TECHNIQUE_GOURAUD) begin : gen_gouraud
+      assign zero_normal = 1'b0;  // there are no normals
       assign unsupported = write_enable;  // there is nothing to write
 
       gouraud_unit u_gouraud_unit (
@@ -233,6 +239,7 @@ module phong_pipeline #(
       );
     end else begin : gen_flat
       assign overflow = 1'b0;  // nothing is added
+      assign zero_normal = 1'b0;
       assign unsupported = write_enable;
 
       flat_unit u_flat_unit (

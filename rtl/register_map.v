@@ -1,6 +1,6 @@
 // register_map: the write port: registers, and strobes for the material table.
 // Write only between frames: what is written changes the pixels in flight.
-// Latency 1.
+// Latency 1 to the strobes, 2 to the registers.
 `default_nettype none
 `include "phong_config.vh"
 
@@ -56,12 +56,14 @@ module register_map #(
   wire is_weight = ~write_address[MATERIAL_BITS+INDEX_BITS];
   wire [INDEX_BITS-1:0] field = write_address[INDEX_BITS-1:0];
   wire write_field = write_enable & ~is_weight;
-  reg write_control;
+  reg write_half_x, write_half_z, write_control;
 
   integer c;
   always @(posedge clk) begin
-    if (write_field & (field == HALF_X)) half_x <= write_word[HALF_BITS-1:0];
-    if (write_field & (field == HALF_Z)) half_z <= write_word[HALF_BITS-1:0];
+    write_half_x <= write_field & (field == HALF_X);
+    write_half_z <= write_field & (field == HALF_Z);
+    if (write_half_x) half_x <= table_word[HALF_BITS-1:0];
+    if (write_half_z) half_z <= table_word[HALF_BITS-1:0];
     write_weight <= write_enable & is_weight;
     write_exponent <= write_field & (field == EXPONENT);
     write_control <= write_field & (field == CONTROL);
@@ -77,7 +79,7 @@ module register_map #(
   generate
     if (TWO_SIDED) begin : gen_two_sided
       reg turn;
-      always @(posedge clk) if (write_field & (field == CONTROL)) turn <= write_word[0];
+      always @(posedge clk) if (write_control) turn <= table_word[0];
       assign two_sided = turn;
     end else begin : gen_one_sided
       assign two_sided = 1'b0;

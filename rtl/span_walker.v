@@ -37,6 +37,7 @@ module span_walker #(
 );
 
   reg busy;
+  reg walking;  // ~at_end once more, for use in here: at_end drives registers far and wide
   reg at_end;  // the pixel at the outputs is the last of its span, or there is none
   reg next_ends;  // the pixel after it is
   reg [COORDINATE_BITS:0] remaining;  // pixels of the span after this one
@@ -46,17 +47,19 @@ module span_walker #(
   reg illegal;  // it was
 
   assign pixel_valid = busy & credit;
-  assign pixel_last = last & at_end;
-  assign span_ready = credit & at_end;
+  assign pixel_last = last & ~walking;
+  assign span_ready = credit & ~walking;
 
   // Both drive whole words, so they are registers: span_valid decides only whether what was loaded
   // is a span, and without credit nothing moves, not even into an idle walker.
   assign advance = credit;
   assign load = at_end;
 
+  wire ends = walking ? next_ends : ~span_valid | (span_length[COORDINATE_BITS:1] == 0);
+
   always @(posedge clk) begin
     if (advance) begin
-      if (load) begin
+      if (~walking) begin
         {beyond, pixel_x} <= {{2{span_length == 0}}, span_x};
         pixel_y <= span_y;
         pixel_material <= span_material;
@@ -73,12 +76,14 @@ module span_walker #(
     if (reset) begin
       busy <= 1'b0;
       at_end <= 1'b1;
+      walking <= 1'b0;
     end else if (advance) begin
-      busy <= span_valid | ~load;
-      at_end <= load ? ~span_valid | (span_length[COORDINATE_BITS:1] == 0) : next_ends;
+      busy <= span_valid | walking;
+      at_end <= ends;
+      walking <= ~ends;
     end
 
-    ended <= ~reset & pixel_valid & at_end;
+    ended <= ~reset & pixel_valid & ~walking;
     illegal <= (beyond != 0) | overflow;
   end
 

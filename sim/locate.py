@@ -54,7 +54,7 @@ async def locate_stage(dut):
             continue
         tb = UnitTB(dut, module)
         if module == "normalizer":
-            await tb.hold(two_sided=int(frame.two_sided))
+            await tb.hold(valid=1, two_sided=int(frame.two_sided))
         elif module == "shading_unit":
             half = (code & ((1 << config.half_vector.bits) - 1) for code in frame.half_vector)
             await tb.hold(**dict(zip(("half_x", "half_z"), half, strict=True)))

@@ -23,6 +23,7 @@ module pipeline_bench #(
     output wire [  PIXEL_BITS-1:0] m_axis_tdata,
     output wire                    m_axis_tlast,
     output wire                    illegal_span,
+    output wire                    zero_normal,
     output wire                    unsupported,
     output wire [            31:0] pixel_latency
 );
@@ -44,6 +45,7 @@ module pipeline_bench #(
       .m_axis_tdata(m_axis_tdata),
       .m_axis_tlast(m_axis_tlast),
       .illegal_span(illegal_span),
+      .zero_normal(zero_normal),
       .unsupported(unsupported)
   );
 

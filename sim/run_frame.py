@@ -31,7 +31,8 @@ class SimResult:
 
     pixels: as they came. cycles: clocks from the first span accepted to the last pixel taken.
     latency_cycles: to the first pixel offered. stall_cycles: of `cycles`, those after the first
-    pixel in which none was taken. extra_pixels: pixels after the last.
+    pixel in which none was taken. illegal_spans, zero_normals: how often the pipeline flagged them.
+    extra_pixels: pixels after the last.
     build_s, simulate_s: seconds. unsupported: spans and register writes that need what the build
     leaves out.
     """
@@ -45,6 +46,7 @@ class SimResult:
     extra_pixels: int
     build_s: float
     simulate_s: float
+    zero_normals: int = 0
     unsupported: int = 0
 
 
@@ -135,7 +137,8 @@ def simulate_jobs(
                 SimResult(
                     read_pixels(folder / f"{k}.pixels", config), bool(c["complete"]), c["cycles"],
                     c["latency"], c["stall_cycles"], c["illegal_spans"],
-                    c.get("extra_pixels", 0), build_s, c["seconds"], c["unsupported"],
+                    c.get("extra_pixels", 0), build_s, c["seconds"], c["zero_normals"],
+                    c["unsupported"],
                 )
             )  # fmt: skip
         return results

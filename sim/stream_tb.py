@@ -159,12 +159,14 @@ class PipelineTB(Clocked):
         self.source = Source(self, "s_axis")
         self.sink = Sink(self, "m_axis", "phong_pipeline")
         self.illegal_at: list[int] = []
+        self.zero_at: list[int] = []
 
     async def reset(self, clocks: int = 2):
         """Hold reset; nothing is offered or expected any more."""
         self.source.drop()
         self.sink.drop()
         self.illegal_at.clear()
+        self.zero_at.clear()
         await self.edge()
         self.drive(s_axis_tvalid=0, reset=1)
         for _ in range(clocks):
@@ -190,6 +192,8 @@ class PipelineTB(Clocked):
         self.sink.observe()
         if self.read("illegal_span"):
             self.illegal_at.append(self.clock)
+        if self.read("zero_normal"):
+            self.zero_at.append(self.clock)
 
     async def drain(self, patience: int = 2000, after: int = 300):
         """Run until all that is expected came, and `after` clocks more: nothing is left over."""

@@ -140,8 +140,9 @@ MODULES = {
                 L.format("NORMALIZER"),
             ),
             Stage("normalizer.lit", ("lit",), L.format("NORMALIZER")),
+            Stage("normalizer.zero", ("zero_normal",), L.format("ZERO_NORMAL")),
         ),
-        held=(("two_sided", 1),),
+        held=(("reset", 1), ("two_sided", 1), ("valid", 1)),
         children=(
             Child(
                 "u_inverse_sqrt.gen_lines.u_inverse_sqrt", "inverse_sqrt",

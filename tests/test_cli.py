@@ -86,7 +86,7 @@ def test_a_good_run(start, scene, tmp_path):
     report = json.loads((tmp_path / "out/report.json").read_text())
     assert list(report) == [
         "schema", "scene", "technique", "size", "pixels", "spans", "illegal_spans", "unsupported",
-        "cycles",
+        "zero_normals", "cycles",
         "cycles_per_pixel", "latency_cycles", "stall_cycles", "utilization", "budget", "compare",
         "error", "input_error", "degenerate_triangles", "config", "versions", "wall_s",
     ]  # fmt: skip
@@ -100,7 +100,7 @@ def test_a_good_run(start, scene, tmp_path):
         "met": True, "max_fps": 200e6 / cycles,
     }  # fmt: skip
     assert report["compare"] == {
-        "pixels": pixels, "mismatches": 0, "pruned_model_mismatches": 0
+        "pixels": pixels, "mismatches": 0, "zero_normals": 0, "pruned_model_mismatches": 0
     }  # fmt: skip
     keys = {"max_lsb", "mean_lsb", "rms_lsb", "p999_lsb", "correctly_rounded", "psnr_db"}
     assert set(report["error"]) == keys | {"bound_lsb"} and set(report["input_error"]) == keys

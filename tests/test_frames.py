@@ -14,7 +14,6 @@ from sim.build import ROOT, RTL, Bench
 from sim.locate import locate
 from sim.run_frame import Job, simulate_jobs
 
-FPS = 30
 README = (ROOT / "README.md").read_text()
 
 
@@ -27,7 +26,7 @@ def test_bundled_scene(scene):
         assert result.mismatches == 0, f"{what}: {result.first}"
         assert done.complete and not done.extra_pixels and not done.illegal_spans, what
         assert done.stall_cycles == 0, what
-        assert result.max_fps >= FPS, what
+        assert result.max_fps >= results.FPS, what
         assert result.error["max_lsb"] <= result.bound_lsb <= 1, what
         assert result.error["correctly_rounded"] >= 0.999, what
         assert done.pixels.last.sum() == 1 and done.pixels.last[-1], what

@@ -68,6 +68,11 @@ def lit(normal, two_sided: bool):
     return (normal[2] > 0) | (two_sided & (normal[2] < 0))
 
 
+def zero(normal):
+    """Whether it is the zero vector, bool[n]: `zero_normal` of the RTL."""
+    return (normal == 0).all(axis=0)
+
+
 def normalizer(normal, two_sided: bool, config: Config, trace: dict | None = None):
     """Unit normal, |cos(i)| and whether they are lit, of interpolated normals.
 
@@ -89,4 +94,5 @@ def normalizer(normal, two_sided: bool, config: Config, trace: dict | None = Non
         trace["normalizer.scale"] = tuple(product)
         trace["normalizer.round"] = (*unit, cosine)
         trace["normalizer.lit"] = (lit(normal, two_sided).astype(np.int64),)
+        trace["normalizer.zero"] = (zero(normal).astype(np.int64),)
     return unit, cosine, lit(normal, two_sided)

@@ -12,7 +12,7 @@ from ..frame import Frame
 from .flat_unit import flat_unit
 from .gouraud_unit import gouraud_unit
 from .normal_interpolator import normal_interpolator
-from .normalizer import normalizer
+from .normalizer import normalizer, zero
 from .shading_unit import shading_unit
 from .span_walker import span_walker
 from .unnormalized import unnormalized
@@ -73,3 +73,18 @@ def render(
         if progress:
             progress(block.stop / total)
     return Pixels(x, y, rgb, last)
+
+
+def zero_normals(frame: Frame, config: Config = DEFAULT) -> int:
+    """How many pixels of `frame` have the zero vector for a normal (the RTL flags each).
+
+    None where nothing is normalized.
+    """
+    if config.technique != "phong" or config.normal_method == "none":
+        return 0
+    spans, count = frame.spans, 0
+    total = int(np.maximum(spans["length"], 1).sum())
+    for first in range(0, total, BLOCK):
+        span, k, *_ = span_walker(spans, first, min(first + BLOCK, total), config)
+        count += int(zero(interpolate(spans, span, k, config)[0]).sum())
+    return count

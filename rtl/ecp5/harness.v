@@ -16,7 +16,7 @@ module harness #(
 );
 
   localparam INPUTS = 5 + WRITE_ADDRESS_BITS + WRITE_WORD_BITS + SPAN_BITS;
-  localparam OUTPUTS = 5 + PIXEL_BITS;
+  localparam OUTPUTS = 6 + PIXEL_BITS;
 
   reg [INPUTS-1:0] inputs;
   reg [OUTPUTS-1:0] outputs;
@@ -41,10 +41,11 @@ module harness #(
       .s_axis_tlast(span_last),
       .m_axis_tvalid(driven[1]),
       .m_axis_tready(pixel_ready),
-      .m_axis_tdata(driven[OUTPUTS-1:5]),
+      .m_axis_tdata(driven[OUTPUTS-1:6]),
       .m_axis_tlast(driven[2]),
       .illegal_span(driven[3]),
-      .unsupported(driven[4])
+      .zero_normal(driven[4]),
+      .unsupported(driven[5])
   );
 
   always @(posedge clk) begin

@@ -50,6 +50,11 @@
   reg f_bad, f_flag;
   reg signed [F_WIDE-1:0] f_x, f_y, f_z;
   reg signed [NORMAL_BITS-1:0] f_step_x, f_step_y, f_step_z;
+  // the normal at the interpolators, and the flag PHONG_ZERO_NORMAL_LATENCY clocks later
+  wire f_zero = pixel_valid && f_x[NORMAL_BITS-1:0] == 0 && f_y[NORMAL_BITS-1:0] == 0 &&
+      f_z[NORMAL_BITS-1:0] == 0;
+  reg [`PHONG_ZERO_NORMAL_LATENCY-1:0] f_zeros;
+  always @(posedge clk) f_zeros <= reset ? 0 : {f_zeros, f_zero};
   wire f_outside = f_x > F_MAX || f_x < F_MIN || f_y > F_MAX || f_y < F_MIN ||
       f_z > F_MAX || f_z < F_MIN;
 
@@ -102,6 +107,7 @@
       a_stable : assert (!f_stalled || (m_axis_tvalid && {m_axis_tlast, m_axis_tdata} == f_out));
       a_latency : assert (!f_timed || m_axis_tvalid == (f_time == F_FIRST));
       a_full_rate : assert (f_flow != F_FIRST + 1 || m_axis_tvalid);
+      a_zero : assert (zero_normal == f_zeros[`PHONG_ZERO_NORMAL_LATENCY-1]);
       a_illegal : assert (illegal_span == f_flag);
       c_back_to_back : cover (f_single && f_run == 3);
     end

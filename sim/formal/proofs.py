@@ -63,10 +63,10 @@ _FIFO_TWINS = (
          "a_not_early", 16),
     Twin("pixel_fifo", "credits <= ALL;", "credits <= LATENCY;", "a_full_rate", 16),
 )  # fmt: skip
-_READY = "span_ready = credit & at_end;"
+_READY = "span_ready = credit & ~walking;"
 _WALKER_TWINS = (
     Twin("span_walker", "pixel_valid = busy & credit;", "pixel_valid = busy;", "a_credit"),
-    Twin("span_walker", _READY, "span_ready = at_end;", "a_ready"),
+    Twin("span_walker", _READY, "span_ready = ~walking;", "a_ready"),
     Twin("span_walker", "next_ends <= remaining == 2;", "next_ends <= remaining == 3;", "a_ready"),
     Twin("span_walker", "<= {beyond, pixel_x} + 1'b1;", "<= {beyond, pixel_x};", "a_place"),
     Twin("span_walker", "illegal <= (beyond != 0) | overflow;", "illegal <= overflow;",
@@ -82,6 +82,7 @@ _PIPELINE = "spans in, their pixels out, in order, after a constant time, at ful
 _PIPELINE_TWINS = (
     Twin("phong_pipeline", "overflow = overflow_x | overflow_y | overflow_z;",
          "overflow = overflow_x | overflow_y;", "a_illegal"),
+    Twin("normalizer", "& ~sign_p3 &", "&", "a_zero"),
     Twin("phong_pipeline", ".out_ready(m_axis_tready),", ".out_ready(1'b1),", "a_stable"),
     Twin("phong_pipeline", ".span_y(span_y),", ".span_y(span_x),", "a_order_and_place"),
 )  # fmt: skip
@@ -133,8 +134,8 @@ PROOFS = (
     Proof(
         "back to back", "spans of one pixel follow each other and leave with no clock between",
         "phong_pipeline", "cover", 14, "latency 4", latency=4,
-        twins=(Twin("span_walker", "busy <= span_valid | ~load;",
-                    "busy <= span_valid & ~busy | ~load;", "c_back_to_back"),),
+        twins=(Twin("span_walker", "busy <= span_valid | walking;",
+                    "busy <= span_valid & ~busy | walking;", "c_back_to_back"),),
     ),
     Proof(
         "back to back, real", "the same, with the real latency", "phong_pipeline", "cover", 90,

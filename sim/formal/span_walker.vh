@@ -1,6 +1,6 @@
 // Properties of span_walker, at the end of its text: a span is exactly its pixels, one whenever
 // there is credit, and the next span starts with no clock between.
-// Uses these names inside: busy, at_end, next_ends, remaining, last, beyond.
+// Uses these names inside: busy, at_end, walking, next_ends, remaining, last, beyond.
 
   localparam F_BITS = COORDINATE_BITS + 2;
   localparam [F_BITS-1:0] F_WIDTH = 1 << COORDINATE_BITS;
@@ -65,7 +65,7 @@
   // ---- invariants that make these inductive ----
   always @(*) begin
     if (f_past) begin
-      i_busy : assert (busy == f_active && at_end == f_free);
+      i_busy : assert (busy == f_active && at_end == f_free && walking == !at_end);
       if (f_active) begin
         i_left : assert (f_left != 0 && next_ends == (f_left == 2));
         i_remaining : assert (f_left == 1 || remaining == f_left - 1'b1);

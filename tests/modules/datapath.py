@@ -80,7 +80,7 @@ async def normalizer_random(dut):
     """Random and extreme normals, one- and two-sided."""
     tb = UnitTB(dut, MODULE)
     for two_sided in (0, 1):
-        await tb.hold(two_sided=two_sided)
+        await tb.hold(two_sided=two_sided, valid=1)
         normal = _normals(np.random.default_rng(SEED + two_sided), RANDOM)
         trace = {}
         normalizer(normal, bool(two_sided), C, trace)
@@ -96,6 +96,7 @@ async def normalizer_small(dut):
     normal = np.concatenate([grid << k for k in range(C.normal.bits - 3)], axis=1)
     trace = {}
     normalizer(normal, False, C, trace)
+    await tb.hold(valid=1)
     await tb.check(list(normal), trace)
 
 
@@ -106,6 +107,8 @@ async def normalizer_latency(dut):
     one = C.normal.one
     await tb.check_latency([one, 0, 0], [0, one, one], "normalizer.round")
     await tb.check_latency([one, 0, 0], [one, 0, 1], "normalizer.lit")
+    await tb.hold(valid=1)
+    await tb.check_latency([0, 0, -1], [0, 0, 0], "normalizer.zero")
 
 
 # -- reflection -----------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ from model.config import DEFAULT, TECHNIQUES
 from model.frame import SPAN_DTYPE
 from model.registers import writes
 from model.spans import illegal_spans, pack, record_bits, span_fields
-from model.twin import render
+from model.twin import render, zero_normals
 from sim.stream_tb import REGIMES, PipelineTB, pauses
 from tests.modules.frames import random_frame
 
@@ -197,6 +197,34 @@ async def illegal_spans_are_flagged_once(dut):
     assert len(tb.illegal_at) == wanted, (
         f"module phong_pipeline: {len(tb.illegal_at)} flags for {wanted} illegal spans"
     )
+
+
+@cocotb.test()
+@cocotb.parametrize(stall=[cocotb.Param(regime, regime) for regime in REGIMES])
+async def zero_vectors_are_flagged_once(dut, stall):
+    """Each pixel whose normal is the zero vector is flagged once, no other is, also by a reset."""
+    tb = PipelineTB(dut)
+    await tb.reset()
+    frame = random_frame(SEED, 60, 9)
+    one = np.array([1, -3, 1 << 20])
+    crossing = [_span(-k * one, one, 9) for k in range(12)]  # through zero at pixel k
+    nearly = [_span(v, 0, 2) for v in ([0, 0, -1], [-1, 0, 0], [0, 1, 0], LOW)]
+    frame.spans = np.concatenate([frame.spans, _span(0, 0, 7), *crossing, *nearly])
+    await tb.write(writes(frame, C))
+    tb.sink.note = f"stall {stall}, seed {SEED}"
+    tb.sink.stall = pauses(stall, SEED)
+    _queue(tb, frame)
+    await tb.drain()
+    wanted = zero_normals(frame, C)
+    assert wanted >= 16 and len(tb.zero_at) == wanted, f"{len(tb.zero_at)} of {wanted} flags"
+    frame.spans = _span(0, 0, 100)
+    _queue(tb, frame)
+    while not tb.zero_at[wanted:]:
+        await tb.step()
+    await tb.reset(1)
+    for _ in range(100):
+        await tb.step()
+    assert not tb.zero_at, f"flagged {len(tb.zero_at)} times after a reset"
 
 
 @cocotb.test()

@@ -1,0 +1,64 @@
+"""Searches for the input with the largest error: `make adversarial`.
+
+Exit code: 0; 1 if an input is beyond its bound; 2. An input worse than the kept one (see
+model/adversarial.py) is shown, and kept with `--keep`; `make stability` replays what is kept.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+
+from rich.console import Console
+from rich.table import Table
+
+from model import adversarial, error_budget
+from scripts.run import Steps
+from sim.build import BUILD
+
+
+def main(argv: list[str]) -> int:
+    """Search all families; returns the exit code."""
+    old = {(r["limit"], r["steep"]): r for r in adversarial.kept()} if _kept() else {}
+    steps, rows, shown, beyond, better = Steps(), [], [], [], []
+    table = Table(title="largest error found, LSB", title_style="bold")
+    for title in ("inputs", "found", "kept", "bound of the input", "bound of all such inputs"):
+        table.add_column(title, justify="left" if title == "inputs" else "right")
+    for family in adversarial.FAMILIES:
+        with steps.step(family.name) as progress:
+            found = adversarial.search(family, progress=progress)
+        before = old.get((family.limit, family.steep))
+        if before is None or found["error_lsb"] > before["error_lsb"]:
+            better.append(family.name)
+            rows.append(found)
+        else:
+            rows.append(before)
+        bound = float(error_budget.bound_lsb(adversarial.frame(found)))
+        if found["error_lsb"] > bound:
+            beyond.append(f"{family.name}: {found['error_lsb']:.4f} LSB is beyond {bound:.4f}")
+        shown.append(found | {"family": family.name, "bound_lsb": bound})
+        table.add_row(
+            family.name, f"{found['error_lsb']:.4f}",
+            f"{before['error_lsb']:.4f}" if before else "–", f"{bound:.4f}",
+            f"{family.bound_lsb():.4f}",
+        )  # fmt: skip
+    folder = BUILD / "stability"
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "adversarial.json").write_text(json.dumps(shown, indent=1) + "\n")
+    Console().print(table)
+    if better and "--keep" in argv:
+        adversarial.keep(rows)
+        print(f"kept in {adversarial.KEPT.name}: {', '.join(better)}")
+    elif better:
+        print(f"worse than what is kept: {', '.join(better)}; KEEP=1 keeps them")
+    for line in beyond:
+        print(f"FAILED: {line}", file=sys.stderr)
+    return 1 if beyond else 0
+
+
+def _kept() -> bool:
+    return adversarial.KEPT.is_file()
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,92 @@
+"""The worst inputs found, replayed in RTL, and the search that found them."""
+
+import numpy as np
+import pytest
+
+from model import adversarial, error_budget, reference, stability, twin
+from model.adversarial import FAMILIES
+from model.config import DEFAULT as C
+from model.scene import bundled_scenes
+from model.spans import illegal_spans
+from scripts.stability import (
+    adversarial_cases,
+    error_lines,
+    error_rows,
+    power_row,
+    scene_errors,
+)
+from sim import stability as table
+from sim.build import ROOT
+
+README = (ROOT / "README.md").read_text()
+QUICK = {"points": 512, "rounds": 60, "examples": 60, "climbs": 1}
+
+
+def test_the_worst_inputs_come_out_of_the_rtl_as_found():
+    rows = table.run_cases(adversarial_cases())
+    for row in rows:
+        assert not row.failures and row.mismatches == 0, f"{row.case}: {row.failures}"
+    scenes = [table.scene_case(name) for name in bundled_scenes()]
+    errors = error_rows(scene_errors(scenes, table.results(scenes)), rows)
+    for row, line in zip(errors, error_lines(errors), strict=True):
+        assert line in README, "the README's table is old: make stability"
+        assert 0.5 < row["adversarial_lsb"] <= row["adversarial_bound_lsb"], row
+        assert row["adversarial_bound_lsb"] <= row["bound_lsb"], row
+        assert row["scenes_lsb"] <= row["adversarial_lsb"], "a scene is worse than the search"
+
+
+def test_the_rows_are_counted():
+    single = ("shared edges", "powers", "long run", "large frame")
+    rows = len(stability.cases()) + len(FAMILIES) + len(bundled_scenes()) + len(single)
+    assert f"runs {rows} stiff and extreme cases" in README
+
+
+def test_the_worst_inputs_are_legal():
+    assert [(r["limit"], r["steep"]) for r in adversarial.kept()] == [
+        (f.limit, f.steep) for f in FAMILIES
+    ]
+    for row in adversarial.kept():
+        frame = adversarial.frame(row)
+        assert not illegal_spans(frame, C).any()
+        assert 0 <= row["ambient"] and row["ambient"] + row["diffuse"] <= C.coefficient.one
+        assert C.exponent.one <= row["exponent"] <= row["limit"] * C.exponent.one
+        weight = np.array(row["weight"])
+        assert weight.min() >= 0 and weight.max() <= C.coefficient.one
+        assert row["steep"] or len(set(row["weight"])) == 1
+        assert abs(np.hypot(*row["half_vector"]) / C.half_vector.one - 1) < 2**-16
+        pixels, exact = twin.render(frame), reference.render(frame)
+        assert abs(np.abs(pixels.rgb - exact).max() - row["error_lsb"]) < 1e-9
+
+
+@pytest.mark.parametrize("family", FAMILIES, ids=lambda f: f.name)
+def test_a_short_search(family):
+    """It finds errors beyond rounding, within the bound, and the same ones again."""
+    found = adversarial.search(family, **QUICK)
+    assert 0.505 < found["error_lsb"] <= error_budget.bound_lsb(adversarial.frame(found))
+    assert found == adversarial.search(family, **QUICK)
+
+
+def test_the_search_sees_a_bound_that_is_too_low(monkeypatch):
+    """It would have caught the paper's form of 1 - cos(s), whose error grows with n."""
+
+    def papers(unit, half_vector, config, trace=None):
+        hx, hz = half_vector
+        x, _, z = unit
+        n_h = (hx * x + hz * z) >> config.half_vector.fraction
+        cos_s = 2 * n_h * n_h - (1 << 2 * config.unit.fraction)
+        v = (1 << 2 * config.unit.fraction) - np.maximum(cos_s, 0)
+        shift = 2 * config.unit.fraction - config.versine.fraction
+        return np.clip(v >> shift, 0, config.versine.max)
+
+    monkeypatch.setattr(twin.shading_unit, "reflection", papers)
+    found = adversarial.search(FAMILIES[2], **QUICK)
+    assert found["error_lsb"] > FAMILIES[2].bound_lsb()
+
+
+def test_the_power_alone():
+    errors = adversarial.power_errors()
+    assert not power_row(errors).failures
+    at_20 = next(row["max_error"] for row in errors if row["n"] == 20)
+    assert f"at n = 20 it is {at_20:.2g}," in README
+    rows = [{"n": 20, "max_error": 0.0002, "bound": 0.0001, "codes": 1}]
+    assert len(power_row(rows).failures) == 2

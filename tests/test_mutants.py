@@ -1,0 +1,21 @@
+"""A sample of mutants; `make mutate` runs them all."""
+
+import subprocess
+import sys
+
+from sim.build import ROOT
+
+SAMPLE = 8
+
+
+def test_a_sample_of_mutants_is_killed():
+    command = [sys.executable, "-m", "scripts.mutate", "--no-check", "--sample", str(SAMPLE)]
+    done = subprocess.run(command, cwd=ROOT, text=True, capture_output=True, timeout=600)
+    assert done.returncode == 0, done.stdout + done.stderr[-2000:]
+    assert f"{SAMPLE} mutants, {SAMPLE} killed" in done.stdout
+
+
+def test_what_is_not_in_the_design_is_one_line():
+    command = [sys.executable, "-m", "scripts.mutate", "--files", "nothing"]
+    done = subprocess.run(command, cwd=ROOT, text=True, capture_output=True)
+    assert done.returncode == 2 and done.stderr == "mutate: not in rtl/: nothing\n"

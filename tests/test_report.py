@@ -1,0 +1,399 @@
+"""The page of `make report`: what is in it, and in Chromium what it draws and what its controls do.
+
+The tests marked `browser` run under `make test-report`.
+"""
+
+import csv
+import io
+import json
+import shutil
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from model.scene import bundled_scenes
+from scripts import report
+from scripts import run as run_scene
+
+RED, BLUE = (200, 30, 20), (20, 40, 200)
+SCENES = ("pyramid", "sphere")
+browser = pytest.mark.browser
+
+
+def point(method, label, cycles, rms, **more):
+    """A row of the precision sweep."""
+    return {
+        "name": label, "family": "precision", "method": method, "label": label, "cycles": cycles,
+        "clock_mhz": 200, "clock_source": "stated", "frame_us": cycles / 200, "max_lsb": 2 * rms,
+        "rms_lsb": rms, "p999_lsb": 1.5 * rms, "mean_lsb": rms / 2,
+        "correctly_rounded": 1 - rms / 9, "psnr_db": 50, "simulate_s": 1, "model_s": 0.5,
+        "dsp": "", "lut": "", "ff": "", "ebr": "", "pareto": 1,
+    } | more  # fmt: skip
+
+
+PRECISION = [
+    point("tables", "8 lines", 1000, 2.0), point("tables", "64 lines", 1000, 0.4),
+    point("Newton", "1 step", 1300, 0.3), point("Newton", "2 steps", 1900, 0.29),
+]  # fmt: skip
+
+
+def write_csv(path, rows):
+    with path.open("w", newline="") as file:
+        out = csv.DictWriter(file, rows[0])
+        out.writeheader()
+        out.writerows(rows)
+
+
+def solid(path, colour):
+    """Fill the picture in `path` with a colour."""
+    with Image.open(path) as picture:
+        Image.new("RGB", picture.size, colour).save(path)
+
+
+@pytest.fixture(scope="module")
+def build(tmp_path_factory):
+    """A build folder with two scenes that were run, one of them "in" two older techniques, which
+    are a red and a blue picture here, and small tables of each kind."""
+    build = tmp_path_factory.mktemp("build")
+    for name in SCENES:
+        out = build / name
+        assert run_scene.main([f"--scene={name}", "--size=160x120", f"--out={out}"]) == 0
+    for name, colour in (("gouraud", RED), ("flat", BLUE)):
+        shutil.copytree(build / "sphere", build / f"sphere-{name}")
+        solid(build / f"sphere-{name}" / "frame.png", colour)
+    (build / "sweep").mkdir()
+    write_csv(build / "sweep" / "precision.csv", PRECISION)
+    write_csv(build / "sweep" / "tessellation.csv", [
+        {"shape": "sphere", "technique": t, "level": k, "triangles": 20 * 4**k, "spans": 90 * 2**k,
+         "cycles": 9000 + 10 * 2**k, "max_lsb": 30 / 4**k, "rms_lsb": 9 / (1 + j) / 4**k,
+         "p999_lsb": 20 / 4**k, "mean_lsb": 3 / 4**k}
+        for j, t in enumerate(("flat", "Gouraud", "Phong")) for k in range(4)
+    ])  # fmt: skip
+    row = {"scene": "sphere", "size": "160×120", "pixels": 9000, "spans": 500, "cycles": 9075,
+           "fps": 22000.0, "mismatches": 0, "max_lsb": 0.5, "bound_lsb": 0.55}  # fmt: skip
+    (build / "results.json").write_text(json.dumps(
+        {"schema": 1, "fps": 30, "clock_hz": 200e6, "cycles_available": 6_666_666, "rows": [row]}
+    ))  # fmt: skip
+    case = {"case": "a case", "extreme": "much", "expected": "well", "pixels": 5, "max_lsb": 0.5,
+            "bound_lsb": 0.6, "mismatches": 0, "zero_normals": 1, "failures": [],
+            "verdict": "ok"}  # fmt: skip
+    bad = case | {"case": "<b>bad</b>", "max_lsb": None, "failures": ["it broke"],
+                  "verdict": "FAILED"}  # fmt: skip
+    errors = [
+        {"family": f"n ≤ {limit}", "limit": limit, "steep": False, "bound_lsb": 0.6,
+         "scenes_lsb": 0.51, "adversarial_lsb": 0.55, "adversarial_bound_lsb": 0.58}
+        for limit in (10, 32, 128)
+    ]  # fmt: skip
+    (build / "stability").mkdir()
+    (build / "stability" / "report.json").write_text(json.dumps({
+        "schema": 2, "rows": [case, bad], "errors": errors, "amm_2012_at_20": 0.00141,
+        "powers": [{"n": 20, "codes": 4, "max_error": 1e-5, "at_versine": 0, "bound": 2e-5}],
+    }))  # fmt: skip
+    return build
+
+
+@pytest.fixture(scope="module")
+def records(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("records")
+    row = {"what": "clock", "figure": "201 MHz", "caveat": "an estimate"}
+    (folder / "other.json").write_text(json.dumps(
+        {"name": "other", "command": "make other", "date": "2026-11-22", "commit": "abc",
+         "tools": "tool 1", "rows": [row]}
+    ))  # fmt: skip
+    return folder
+
+
+@pytest.fixture(scope="module")
+def html(build, records):
+    return report.page(build, records)
+
+
+# -- without a browser -----------------------------------------------------------------------------
+
+
+def test_the_numbers_are_those_of_the_runs(html, build):
+    for name in SCENES:
+        found = json.loads((build / name / "report.json").read_text())
+        assert (
+            f"{found['error']['max_lsb']:.4f} LSB, bound {found['error']['bound_lsb']:.4f}" in html
+        )
+        assert f"0 of {found['pixels']:,} pixels".replace(",", " ") in html
+    assert "201 MHz" in html and "make other" in html and "it broke" in html
+    assert "&lt;b&gt;bad&lt;/b&gt;" in html and "<b>bad</b>" not in html
+
+
+def test_what_is_missing_names_its_command(tmp_path):
+    html = report.page(tmp_path, tmp_path)
+    for command in ("make run", "make results", "make sweep", "make stability", "make synth"):
+        assert f"run <code>{command}" in html, command
+
+
+def test_the_pareto_front():
+    points = [(1, 5), (2, 3), (2, 4), (3, 3), (4, 1), (1, 6)]
+    assert report.pareto(points) == [(1, 5), (2, 3), (4, 1)]
+
+
+def test_a_broken_file_is_named(build, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(report, "run_missing", lambda *_: None)
+    (tmp_path / "stability").mkdir()
+    (tmp_path / "sweep").mkdir()
+    for name, text, said in (
+        ("results.json", "{", "not JSON"),
+        ("stability/report.json", '{"schema": 1, "rows": []}', "another version wrote it"),
+        ("sweep/precision.csv", "method,label\na,b\n", "no column `cycles`"),
+    ):
+        (tmp_path / name).write_text(text)
+        assert report.main(tmp_path) == 2
+        lines = capsys.readouterr().err.splitlines()
+        assert len(lines) == 1 and lines[0].startswith(f"Error: {tmp_path / name}: {said}")
+        assert not (tmp_path / "report").exists()
+        (tmp_path / name).unlink()
+
+
+def test_scenes_without_a_current_result_are_run(build, monkeypatch, capsys):
+    ran = []
+    monkeypatch.setattr(report.run_scene, "main", lambda argv: ran.append(argv[0]) or 0)
+    report.run_missing(list(SCENES), build, run_scene.Steps())
+    assert not ran
+    report.run_missing([*SCENES, "cone"], build, run_scene.Steps())
+    assert ran == ["--scene=cone"]
+    monkeypatch.setattr(report, "newest_source", lambda: 4e9)
+    report.run_missing(list(SCENES), build, run_scene.Steps())
+    assert ran[1:] == ["--scene=pyramid", "--scene=sphere"]
+
+
+# -- in Chromium -----------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    from playwright.sync_api import sync_playwright
+
+    path = shutil.which("chromium")
+    assert path, "Chromium is missing: apt-get install chromium"
+    with sync_playwright() as playwright:
+        made = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        yield made
+        made.close()
+
+
+@pytest.fixture
+def visit(chromium, tmp_path):
+    """Open a text as a page: what it complains of, and what it asks for, is kept and must be
+    nothing but the page."""
+    pages, said = [], []
+
+    def visit(html, width=1280, height=900, **options):
+        path = tmp_path / "index.html"
+        path.write_text(html, encoding="utf-8")
+        page = chromium.new_page(
+            viewport={"width": width, "height": height}, reduced_motion="reduce", **options
+        )
+        page.on("console", lambda message: said.append(f"{message.type}: {message.text}"))
+        page.on("pageerror", lambda error: said.append(str(error)))
+        page.on("request", lambda request: request.url.startswith("data:")
+                or request.url == path.as_uri() or said.append(request.url))  # fmt: skip
+        page.goto(path.as_uri())
+        page.wait_for_selector("html[data-ready]", state="attached")
+        pages.append(page)
+        return page
+
+    yield visit
+    for page in pages:
+        page.close()
+    assert not said, said
+
+
+def drawn(element):
+    """The pixels of an element as they are on the screen, int[height, width, 3]."""
+    element.scroll_into_view_if_needed()
+    with Image.open(io.BytesIO(element.screenshot())) as picture:
+        return np.asarray(picture.convert("RGB")).astype(int)
+
+
+def near(pixels, colour, tolerance=24):
+    """Which of `pixels` have about the colour, bool[height, width]."""
+    return (np.abs(pixels - np.array(colour)) <= tolerance).all(axis=-1)
+
+
+def rgb(text):
+    return tuple(int(text[k : k + 2], 16) for k in (1, 3, 5))
+
+
+def check_the_wipe(page):
+    scene = page.locator("#scene-sphere")
+    scene.locator(".choose-left").select_option("gouraud")
+    scene.locator(".choose-right").select_option("flat")
+    for percent in (0, 25, 70, 100):
+        scene.locator(".slider").fill(str(percent))
+        pixels = drawn(scene.locator(".wipe"))[2:-2]  # the outline may fall between pixels
+        edge = round(percent * pixels.shape[1] / 100)
+        left, right = pixels[:, 2 : max(edge - 3, 2)], pixels[:, edge + 3 : -2]
+        assert near(left, RED).all(), f"{percent} %: left of the edge"
+        assert near(right, BLUE).all(), f"{percent} %: right of the edge"
+
+
+@browser
+def test_the_slider_wipes_one_picture_over_the_other(visit, html):
+    check_the_wipe(visit(html))
+
+
+@browser
+def test_the_check_of_the_slider_can_fail(visit, html):
+    with pytest.raises(AssertionError, match="edge"):
+        check_the_wipe(visit(html.replace("clip-path: inset", "unknown: inset")))
+
+
+@browser
+def test_a_click_on_the_picture_moves_the_edge(visit, html):
+    page = visit(html)
+    scene = page.locator("#scene-sphere")
+    scene.locator(".choose-left").select_option("gouraud")
+    scene.locator(".choose-right").select_option("flat")
+    scene.locator(".wipe").scroll_into_view_if_needed()
+    box = scene.locator(".wipe").bounding_box()
+    page.mouse.click(box["x"] + 0.8 * box["width"], box["y"] + 0.5 * box["height"])
+    share = near(drawn(scene.locator(".wipe")), RED).mean()
+    assert abs(share - 0.8) < 0.02
+
+
+@browser
+def test_the_slider_moves_by_keyboard(visit, html):
+    page = visit(html)
+    slider = page.locator("#scene-sphere .slider")
+    slider.focus()
+    page.keyboard.press("End")
+    assert slider.input_value() == "100"
+
+
+@browser
+def test_the_picture_is_that_of_the_rtl(visit, html, build):
+    page = visit(html)
+    scene = page.locator("#scene-pyramid")
+    scene.locator(".slider").fill("100")
+    pixels = drawn(scene.locator(".wipe"))[:, :-4]
+    with Image.open(build / "pyramid" / "frame.png") as picture:
+        size = (pixels.shape[1] + 4, pixels.shape[0])
+        want = np.asarray(picture.resize(size, Image.Resampling.BILINEAR)).astype(int)[:, :-4]
+    assert np.abs(pixels - want).mean() < 3 and np.ptp(want) > 100
+    error_map = drawn(scene.locator("img.map"))
+    assert len(np.unique(error_map.reshape(-1, 3), axis=0)) > 50
+
+
+def mark_at(page, plot, trace, index):
+    """Where on the screen a mark of a plot should be: x, y in pixels of the plot's screenshot."""
+    return page.evaluate(
+        """([plot, trace, index]) => {
+          const div = document.getElementById("plot-" + plot), l = div._fullLayout;
+          const data = div.data.filter((t) => t.mode !== "lines")[trace];
+          return [l.xaxis._offset + l.xaxis.d2p(data.x[index]),
+                  l.yaxis._offset + l.yaxis.d2p(data.y[index])];
+        }""",
+        [plot, trace, index],
+    )
+
+
+@browser
+def test_the_marks_are_drawn_where_the_numbers_are(visit, html):
+    page = visit(html)
+    plot = page.locator("#plot-precision")
+    pixels = drawn(plot)
+    places = []
+    for trace, colour in enumerate(report.COLOURS[:2]):
+        for index in range(2):
+            x, y = (round(v) for v in mark_at(page, "precision", trace, index))
+            assert near(pixels[y - 3 : y + 4, x - 3 : x + 4], rgb(colour)).mean() > 0.5, (x, y)
+            places.append((x, y))
+    # Higher errors are higher up, more time is further right.
+    (x0, y0), (x1, y1), (x2, y2), (x3, y3) = places
+    assert x0 == x1 < x2 < x3 and y0 < y1 < y2 < y3
+    front = near(pixels, (0xC4, 0xC4, 0xC4), 12)
+    assert front.sum() > 500, "no Pareto front"
+
+
+@browser
+def test_choosing_an_axis_draws_another_plot(visit, html):
+    page = visit(html)
+    plot = page.locator("#plot-precision")
+    before, title = drawn(plot), "share not correctly rounded"
+    page.locator("#precision-error").select_option(label=title)
+    page.wait_for_timeout(200)
+    after = drawn(plot)
+    assert (before != after).any(axis=-1).sum() > 300
+    assert plot.locator(".ytitle").text_content() == title
+    costs = page.locator("#precision-cost option").all_text_contents()
+    assert "time a frame, µs" in costs and "multipliers" not in costs  # nothing was synthesized
+
+
+@browser
+def test_values_show_on_hover(visit, html):
+    page = visit(html)
+    plot = page.locator("#plot-precision")
+    plot.scroll_into_view_if_needed()
+    before = drawn(plot)
+    box, (x, y) = plot.bounding_box(), mark_at(page, "precision", 1, 1)
+    page.mouse.move(box["x"] + x, box["y"] + y)
+    label = plot.locator(".hoverlayer .hovertext")
+    label.wait_for()
+    assert "Newton: 2 steps" in label.text_content() and "0.29 LSB" in label.text_content()
+    assert (before != drawn(plot)).any(axis=-1).sum() > 1000
+
+
+@browser
+@pytest.mark.parametrize("name", ["budget", "tessellation", "errors", "stages"])
+def test_every_plot_is_drawn_in_its_colours(visit, html, name):
+    page = visit(html)
+    pixels = drawn(page.locator(f"#plot-{name}"))
+    traces = page.evaluate(f"document.getElementById('plot-{name}').data.length")
+    for colour in report.COLOURS[: min(traces, 2)]:
+        assert near(pixels, rgb(colour)).sum() > 100, colour
+
+
+@browser
+def test_light_and_dark(visit, html):
+    """By the system's setting and by the button; text keeps its contrast, plots follow."""
+    for scheme in ("light", "dark"):
+        page = visit(html, color_scheme=scheme)
+        for _ in range(2):
+            pixels = drawn(page.locator("#h-cycles"))
+            paper, ink = pixels[0, 0].mean(), pixels.mean(axis=-1)
+            assert (paper < 64) == (scheme == "dark"), scheme
+            assert np.abs(ink - paper).max() > 180
+            plot = drawn(page.locator("#plot-errors"))
+            assert (plot[2, 2].mean() < 64) == (scheme == "dark"), f"plot, {scheme}"
+            page.locator("#theme").click()
+            scheme = "dark" if scheme == "light" else "light"
+
+
+@browser
+def test_on_a_phone(visit, html):
+    page = visit(html, 360, 740)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 360
+    picture = page.locator("#scene-sphere .wipe").bounding_box()
+    assert picture["width"] > 260 and picture["x"] + picture["width"] <= 360
+    assert near(drawn(page.locator("#plot-precision")), rgb(report.COLOURS[1])).sum() > 30
+
+
+@browser
+def test_nothing_is_without_a_name(visit, html):
+    """For those who do not see the page: pictures, controls and plots say what they are."""
+    page = visit(html)
+    nameless = page.evaluate("""() => [...document.querySelectorAll("img, input, select, .plot")]
+      .filter((e) => !(e.alt || e.ariaLabel || (e.labels && e.labels.length)))
+      .map((e) => e.outerHTML)""")
+    assert not nameless
+    assert page.locator("h1").count() == 1 and page.locator("html[lang=en]").count() == 1
+
+
+@browser
+def test_a_page_without_any_result(visit, tmp_path):
+    page = visit(report.page(tmp_path, tmp_path))
+    assert page.locator(".missing:visible").count() == 7
+
+
+def test_every_bundled_scene_has_a_place(monkeypatch, tmp_path):
+    asked = []
+    monkeypatch.setattr(report, "scene_result", lambda name, build: asked.append(name))
+    report.page(tmp_path, tmp_path)
+    assert asked == bundled_scenes()
