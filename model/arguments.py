@@ -42,13 +42,15 @@ def mach_bands(made: FrontEnd, technique: str, counted: np.ndarray) -> dict:
     and of the intensity (LSB). Flat faces have no slope, and jumps of the intensity alone.
 
     Jumps are taken in the middle between the dots on both sides, which is where the edge is to
-    half a dot. counted: bool[width * height], the dots (left of the edge) that count.
+    half a dot; spans of one dot have no slope, and do not count. counted: bool[width * height],
+    the dots (left of the edge) that do.
     """
     frame, exact = made.frame, made.exact
     spans = frame.spans
     end = spans["x"] + spans["length"]
     left = np.flatnonzero((spans["y"][:-1] == spans["y"][1:]) & (end[:-1] == spans["x"][1:]))
     left = left[counted[spans["y"][left] * frame.width + end[left] - 1]]
+    left = left[np.minimum(spans["length"][left], spans["length"][left + 1]) > 1]
     h = 0.25  # slopes at the edge itself, from three points on one side of it
     before = [_along(frame, exact, left, spans["length"][left] - 0.5 - i * h, technique)
               for i in range(3)]  # fmt: skip

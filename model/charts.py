@@ -189,12 +189,12 @@ def flicker_chart(films: dict[str, np.ndarray], changes: dict[str, list], path: 
     """Maps of the largest change of each dot from picture to picture, {title: float64[h, w]}, and
     RMS change over the pictures, {title: LSB}."""
     with matplotlib.rc_context(_STYLE | {"axes.grid": False}):
-        figure = Figure(figsize=(3.4 * len(films), 6), layout="constrained")
+        figure = Figure(figsize=(2.2 * len(films), 5), layout="constrained")
         grid = figure.add_gridspec(2, len(films), height_ratios=(3, 2))
         top = max(float(np.nanmax(film)) for film in films.values())
         for k, (title, film) in enumerate(films.items()):
             axes = figure.add_subplot(grid[0, k])
-            shown = axes.imshow(film, cmap="inferno", vmin=0, vmax=min(top, 20))
+            shown = axes.imshow(film, cmap="inferno", vmin=0, vmax=min(top, 10))
             axes.set_title(title)
             axes.axis("off")
         figure.colorbar(shown, ax=figure.axes, label="largest change in a degree, LSB", shrink=0.6)

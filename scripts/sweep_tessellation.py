@@ -28,11 +28,11 @@ FOLDER = BUILD / "sweep"
 #: cycles are empty for the cubic, which has no hardware. The errors are those of the codes that
 #: came out of the RTL; method_...: of the technique itself, before any rounding (for the cubic
 #: both are); facing: dots whose normal is within 60 degrees of the eye; highlight: dots with more
-#: than half of the largest specular term.
+#: than half of the largest specular term. from_phong: from Phong's picture of the same mesh.
 COLUMNS = (
     "shape", "technique", "level", "triangles", "spans", "cycles", "max_lsb", "rms_lsb",
     "p999_lsb", "mean_lsb", "method_max_lsb", "method_rms_lsb", "facing_rms_lsb",
-    "highlight_rms_lsb",
+    "highlight_rms_lsb", "from_phong_rms_lsb",
 )  # fmt: skip
 
 
@@ -61,6 +61,8 @@ def measure(
             for frame, result in zip(frames, results, strict=True):
                 if metrics.compare(twin.render(frame, config), result.pixels).mismatches:
                     raise SimulationError(f"{shape}, {technique}: RTL and model differ")
+        if technique == "phong":
+            phong = pictures
         for k, (level, picture) in enumerate(zip(levels, pictures, strict=True)):
             coded, result = picture, results[k]
             if result:
@@ -80,6 +82,7 @@ def measure(
                     "method_max_lsb": method["max_lsb"], "method_rms_lsb": method["rms_lsb"],
                     "facing_rms_lsb": facing["rms_lsb"],
                     "highlight_rms_lsb": highlight["rms_lsb"],
+                    "from_phong_rms_lsb": tessellation.distance(picture, phong[k]),
                 }
             )  # fmt: skip
     return rows
@@ -111,8 +114,16 @@ def summary(rows: list[dict]) -> dict:
             for shape in orders
         }  # fmt: skip
 
+    def picture_distances(other: str) -> dict:
+        return {
+            shape: [round(r["from_phong_rms_lsb"], 3) for r in rows
+                    if (r["shape"], r["technique"]) == (shape, other)]
+            for shape in orders
+        }  # fmt: skip
+
     return {
         "orders": orders,
+        "from_phong_rms_lsb": {other: picture_distances(other) for other in ("gouraud", "cubic")},
         "times_phong": {
             f"{over}, {where}": ratios(over, column)
             for over in ("gouraud", "cubic")
