@@ -12,6 +12,8 @@ MODULE ?= phong_pipeline
 CONFIG ?= default
 GRADE ?= 6
 SEEDS ?= 3
+AREA ?=
+ROUTE ?=
 GATES ?=
 
 PYTHON := .venv/bin/python
@@ -19,7 +21,7 @@ PYTHON := .venv/bin/python
 quote = '$(subst ','\'',$(1))'
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run prune test lint results bench synth netlist icarus formal coverage activity mutate \
+.PHONY: help setup run prune test lint results bench sweep synth netlist icarus formal coverage activity mutate \
   hardware waves clean
 
 help: ## this list
@@ -48,6 +50,9 @@ help: ## this list
 	@echo '                GRADE=6         speed grade of the chip, 6 or 8'
 	@echo '                SEEDS=3         how many placements to try; the median counts'
 	@echo '                GATES=1         count gate equivalents in standard cells, too (minutes)'
+	@echo 'make sweep    error against run time and hardware over word widths and methods; build/sweep/'
+	@echo '                AREA=1          synthesize each configuration, too, for its size'
+	@echo '                ROUTE=1         place and route each, too, for its clock: hours'
 	@echo 'make netlist  whole frames through the netlist in ECP5 cells, against the model'
 	@echo 'make coverage line, branch and toggle coverage of rtl/ by the module and frame tests'
 	@echo 'make activity register toggles a pixel of every bundled scene'
@@ -104,6 +109,9 @@ adversarial: setup
 
 results: setup
 	@$(PYTHON) -m scripts.results
+
+sweep: setup
+	@$(PYTHON) -m scripts.sweep --area=$(call quote,$(AREA)) --route=$(call quote,$(ROUTE))
 
 synth: setup
 	@$(PYTHON) -m scripts.synth --config=$(call quote,$(CONFIG)) --grade=$(call quote,$(GRADE)) \

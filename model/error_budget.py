@@ -155,9 +155,26 @@ def versine(v, half_vector, config: Config):
     return 2 * (2 * w * dw + dw**2) + _round(config.versine)
 
 
-def specular_power(n: float, config: Config) -> float:
-    """Error of `specular_power` against (1 - v)**n of its own operands.
+def squaring(n: int, config: Config) -> float:
+    """Error of `power_squaring` against (1 - v)**n of its own operands, n whole.
 
+    cos(s) is rounded, or at 1 clamped by one LSB; a square doubles the error and is rounded. A
+    product of two words of at most 1 has at most the sum of their errors, and is rounded.
+    """
+    half = _round(config.power)
+    base, total, factors = config.power.lsb, 0.0, 0
+    for j in range(config.exponent.integer):
+        if n >> j & 1:
+            total += base
+            factors += 1
+        base = 2 * base + half
+    return total + (factors - 1) * half
+
+
+def specular_power(n: float, config: Config) -> float:
+    """Error of cos(s)**n against (1 - v)**n of its own operands, by the method of `config`.
+
+    By tables:
     With x = n * -log2(cos s), an error dx changes the power by at most 2**-x ln 2 dx.
     log: straight lines (the first is clipped at 0: no halving), half a unit of value and of slope,
     the cut of the product. Mantissa of the log: cut to `log_mantissa_bits`, relative, x 2**-x ln 2
@@ -165,6 +182,8 @@ def specular_power(n: float, config: Config) -> float:
     a unit of value and slope, the cuts of the product and of the shift. Then rounding or, at 1,
     the clamp by one LSB.
     """
+    if config.power_method == "squaring":
+        return squaring(int(n), config)
     if n == 1:
         return config.power.lsb
     c = np.linspace(0.5, 1, 4097)
@@ -234,9 +253,12 @@ def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
     return [*parts, Row("code", total, f"LSB: {white} times the terms, and the final rounding")]
 
 
-def derived(config: Config) -> bool:
-    """Whether the budget covers the methods of `config`."""
-    return config.normal_method == "normalize"
+def derived(config: Config, n: float) -> bool:
+    """Whether the budget covers the methods of `config` for the exponent `n`."""
+    power_method = config.power_method == "tables" or (
+        config.power_method == "squaring" and n == int(n)
+    )
+    return config.normal_method == "normalize" and power_method
 
 
 def bound_lsb(frame: Frame, config: Config = DEFAULT) -> float | None:
@@ -244,7 +266,8 @@ def bound_lsb(frame: Frame, config: Config = DEFAULT) -> float | None:
 
     None where no bound is derived for a method of `config`.
     """
-    if not derived(config):
-        return None
     used = np.unique(frame.spans["material"]).tolist()
+    exponents = config.exponent.real(frame.materials.exponent[used])
+    if not all(derived(config, n) for n in exponents.tolist()):
+        return None
     return max((rows(m, frame, config)[-1].bound for m in used), default=0.5)

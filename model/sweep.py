@@ -61,6 +61,9 @@ def of_width(bits: int, name: str = "", **changes) -> Config:
         | _lines(d.root_index_bits - half, d.root_value_bits - less)
         | _parabolas(d.quadratic_index_bits - less // 3, d.quadratic_value_bits - less)
         | _powers(d.log_index_bits - half, d.exp_index_bits - half, less),
+        reciprocal_index_bits=d.reciprocal_index_bits - half,
+        reciprocal_value_bits=d.reciprocal_value_bits - less,
+        reciprocal_slope_bits=d.reciprocal_slope_bits - less + half,
     )
     return dataclasses.replace(config, **changes)
 
@@ -174,6 +177,12 @@ def points() -> list[Point]:
         Point(_root(f"power_tables_{1 << k}", **_powers(k, k)), "power: tables", f"2 x {1 << k}")
         for k in range(3, DEFAULT.log_index_bits)
     ]
+    for power_method, method in (("squaring", "power: squaring"), ("schlick", "power: Schlick")):
+        out += [
+            Point(of_width(w, f"{power_method}_{w}", power_method=power_method), method,
+                  f"{w} bits")
+            for w in (12, 14, 16, 18)
+        ]  # fmt: skip
     return out
 
 

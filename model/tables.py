@@ -190,9 +190,28 @@ def exp_table(config: Config) -> LineTable:
     )
 
 
+@lru_cache
+def reciprocal_table(config: Config) -> LineTable:
+    """1/m, m in [1, 2). Falling lines.
+
+    Value: u0.`reciprocal_value_bits`. Slope: its units, a segment.
+    """
+    segments = 1 << config.reciprocal_index_bits
+    a = 1 + np.arange(segments) / segments
+    b = a + 1 / segments
+    left, right = 1 / a, 1 / b
+    touch = np.sqrt(a * b)  # where the curve is parallel to its chord
+    error = left + (right - left) * (touch - a) * segments - 1 / touch
+    scale = 2.0**config.reciprocal_value_bits
+    return _lines(
+        "reciprocal", left, right, error, scale, config.reciprocal_value_bits,
+        scale, config.reciprocal_slope_bits,
+    )  # fmt: skip
+
+
 def tables(config: Config) -> list[LineTable | ParabolaTable | ConstantTable]:
     """All tables of a configuration, those of methods that it does not use included."""
     return [
         inverse_sqrt_table(config), inverse_sqrt_parabolas(config), inverse_sqrt_start(config),
-        log_table(config), exp_table(config),
+        log_table(config), exp_table(config), reciprocal_table(config),
     ]  # fmt: skip

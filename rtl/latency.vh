@@ -54,9 +54,8 @@
     `PHONG_INVERSE_SQRT_ITERATED_LATENCY )
 
 `define PHONG_ALIGN_LATENCY \
-  ( 1                                /* significant bits of three components */ \
-  + `PHONG_LEADING_ZEROS_LATENCY \
-  + `PHONG_LEFT_SHIFTER_LATENCY \
+  ( (`PHONG_CONSTANT_SHIFT ? 0 : 1 + `PHONG_LEADING_ZEROS_LATENCY + `PHONG_LEFT_SHIFTER_LATENCY) \
+                                     /* significant bits of three components; shift */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
 // From a normal to zero_normal.
@@ -85,8 +84,10 @@
     `PHONG_NORMALIZER_LATENCY )
 
 `define PHONG_REFLECTION_LATENCY \
-  ( `PHONG_MULTIPLIER_LATENCY        /* across: products with h */ \
-  + 2                                /* across: fetch, subtract */ \
+  ( (`PHONG_CONSTANT_HALF_VECTOR ? `PHONG_CONSTANT_HALF_VECTOR_LEVELS \
+                                 : `PHONG_MULTIPLIER_LATENCY + 1) \
+                                     /* across: products with h, fetch */ \
+  + 1                                /* across: subtract */ \
   + `PHONG_ROUND_SATURATE_LATENCY \
   + `PHONG_MULTIPLIER_LATENCY        /* versine: squares */ \
   + 2                                /* versine: fetch, sum */ \
@@ -105,9 +106,12 @@
   ( 1                                /* 1 - versine */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
+`define PHONG_TIMES_EXPONENT_LATENCY \
+  ( `PHONG_CONSTANT_EXPONENT ? `PHONG_CONSTANT_EXPONENT_LEVELS : `PHONG_MULTIPLIER_LATENCY )
+
 `define PHONG_SPECULAR_POWER_LATENCY \
   ( `PHONG_LOG_LATENCY \
-  + `PHONG_MULTIPLIER_LATENCY        /* times exponent */ \
+  + `PHONG_TIMES_EXPONENT_LATENCY \
   + 3                                /* times exponent: shift twice, saturate */ \
   + `PHONG_ROM_LATENCY               /* exp lookup */ \
   + `PHONG_NARROW_MULTIPLIER_LATENCY /* exp refine: slope * offset */ \
@@ -116,21 +120,68 @@
   + `PHONG_ROUND_SATURATE_LATENCY    /* exp shift: round */ \
   + `PHONG_POWER_BYPASS )            /* bypass */
 
+// The other methods for cos(s)^n.
+`define PHONG_SQUARING_STAGE_LATENCY \
+  ( `PHONG_MULTIPLIER_LATENCY        /* products */ \
+  + `PHONG_ROUND_SATURATE_LATENCY \
+  + 1 )                              /* choice */
+
+`define PHONG_POWER_SQUARING_LATENCY \
+  ( `PHONG_SPECULAR_COSINE_LATENCY \
+  + (`PHONG_EXPONENT_BITS - `PHONG_EXPONENT_FRACTION - 1) * `PHONG_SQUARING_STAGE_LATENCY \
+  + 1 )                              /* last: choice */
+
+`define PHONG_POWER_SCHLICK_LATENCY \
+  ( `PHONG_ROUND_SATURATE_LATENCY    /* denominator: versine */ \
+  + `PHONG_MULTIPLIER_LATENCY        /* denominator: times n - 1 */ \
+  + 1                                /* denominator: plus 1 */ \
+  + `PHONG_LEADING_ZEROS_LATENCY     /* normalize */ \
+  + `PHONG_LEFT_SHIFTER_LATENCY \
+  + `PHONG_ROM_LATENCY               /* reciprocal: lookup */ \
+  + `PHONG_MULTIPLIER_LATENCY        /* reciprocal: slope * offset */ \
+  + 1                                /* reciprocal: subtract */ \
+  + `PHONG_ROUND_SATURATE_LATENCY \
+  + `PHONG_MULTIPLIER_LATENCY        /* quotient: product */ \
+  + 2                                /* quotient: shift twice */ \
+  + `PHONG_ROUND_SATURATE_LATENCY )
+
+`define PHONG_SPECULAR_POWER_METHOD_LATENCY \
+  ( `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_TABLES ? `PHONG_SPECULAR_POWER_LATENCY : \
+    `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_SQUARING ? `PHONG_POWER_SQUARING_LATENCY : \
+    `PHONG_POWER_SCHLICK_LATENCY )
+
+// From the versine to where its exponent is wanted.
+`define PHONG_EXPONENT_LATENCY \
+  ( `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_TABLES ? `PHONG_LOG_LATENCY : \
+    `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_SQUARING ? `PHONG_SPECULAR_COSINE_LATENCY - 1 : 0 )
+
 `define PHONG_SPECULAR_WEIGHT_LATENCY \
   ( `PHONG_RAM_LATENCY               /* lookup */ \
   + `PHONG_MULTIPLIER_LATENCY        /* interpolate: step * offset */ \
   + 1                                /* interpolate: add */ \
   + 1 )                              /* interpolate: round */
 
+`define PHONG_WEIGHT_PRODUCT_LATENCY \
+  ( `PHONG_CONSTANT_WEIGHT ? `PHONG_CONSTANT_WEIGHT_LEVELS : `PHONG_MULTIPLIER_LATENCY )
+
+`define PHONG_DIFFUSE_PRODUCT_LATENCY \
+  ( `PHONG_CONSTANT_DIFFUSE ? `PHONG_CONSTANT_DIFFUSE_LEVELS : `PHONG_MULTIPLIER_LATENCY )
+
+// Of the slower of both, if there are two.
+`define PHONG_PRODUCTS_LATENCY \
+  ( `PHONG_SPECULAR \
+    & (!`PHONG_DIFFUSE | (`PHONG_WEIGHT_PRODUCT_LATENCY > `PHONG_DIFFUSE_PRODUCT_LATENCY)) \
+    ? `PHONG_WEIGHT_PRODUCT_LATENCY : `PHONG_DIFFUSE_PRODUCT_LATENCY )
+
 `define PHONG_COLOUR_CHANNEL_LATENCY \
-  ( `PHONG_MULTIPLIER_LATENCY        /* intensity: products */ \
+  ( `PHONG_PRODUCTS_LATENCY          /* intensity: products */ \
   + (`PHONG_ENVIRONMENT & `PHONG_DIFFUSE & `PHONG_SPECULAR ? 2 : 1) \
                                      /* intensity: ambient + diffuse, + specular */ \
   + 1                                /* intensity: clamp, cut */ \
   + 2 )                              /* code: times 255, round */
 
 `define PHONG_POWER_LATENCY \
-  ( `PHONG_POWER_FUNCTION ? `PHONG_SPECULAR_POWER_LATENCY : `PHONG_SPECULAR_COSINE_LATENCY )
+  ( `PHONG_POWER_FUNCTION ? `PHONG_SPECULAR_POWER_METHOD_LATENCY : `PHONG_SPECULAR_COSINE_LATENCY )
 
 // From the unit normal to the products of eq. (3).
 `define PHONG_SPECULAR_LATENCY \

@@ -24,6 +24,8 @@ module shading_unit #(
     parameter SPECULAR         = `PHONG_SPECULAR,
     parameter POWER_FUNCTION   = `PHONG_POWER_FUNCTION,
     parameter WEIGHT_FUNCTION  = `PHONG_WEIGHT_FUNCTION,
+    parameter CONSTANT_EXPONENT = `PHONG_CONSTANT_EXPONENT,
+    parameter CONSTANT_WEIGHT  = `PHONG_CONSTANT_WEIGHT,
     parameter LATENCY          = `PHONG_SHADING_UNIT_LATENCY
 ) (
     input wire clk,
@@ -53,7 +55,7 @@ module shading_unit #(
 
   // Clocks from the input to where a thing is needed.
   localparam POWER_AT = `PHONG_SPECULAR_LATENCY;
-  localparam EXPONENT_AT = `PHONG_REFLECTION_LATENCY + `PHONG_LOG_LATENCY;
+  localparam EXPONENT_AT = `PHONG_REFLECTION_LATENCY + `PHONG_EXPONENT_LATENCY;
   localparam WEIGHT_AT = POWER_AT - `PHONG_SPECULAR_WEIGHT_LATENCY;
 
   // Clocks from the input to where the material is looked up, in this order.
@@ -150,19 +152,23 @@ module shading_unit #(
       if (POWER_FUNCTION) begin : gen_power
         wire [EXPONENT_BITS-1:0] exponent;
 
-        small_ram #(
-            .ADDRESS_BITS(MATERIAL_BITS),
-            .WORD_BITS(EXPONENT_BITS)
-        ) u_exponent_table (
-            .clk(clk),
-            .write_enable(write_exponent),
-            .write_address(write_material),
-            .write_word(write_word[EXPONENT_BITS-1:0]),
-            .address(material_exponent),
-            .word(exponent)
-        );
+        if (CONSTANT_EXPONENT) begin : gen_constant_exponent
+          assign exponent = {EXPONENT_BITS{1'b0}};
+        end else begin : gen_exponent
+          small_ram #(
+              .ADDRESS_BITS(MATERIAL_BITS),
+              .WORD_BITS(EXPONENT_BITS)
+          ) u_exponent_table (
+              .clk(clk),
+              .write_enable(write_exponent),
+              .write_address(write_material),
+              .write_word(write_word[EXPONENT_BITS-1:0]),
+              .address(material_exponent),
+              .word(exponent)
+          );
+        end
 
-        specular_power u_specular_power (
+        specular_power_method u_specular_power (
             .clk(clk),
             .versine(versine),
             .exponent(exponent),
@@ -186,7 +192,9 @@ module shading_unit #(
             .cosine(cosine_weight),
             .weight(weight)
         );
-      end else begin : gen_constant_weight  // interval 0 stands for all
+      end else if (CONSTANT_WEIGHT) begin : gen_constant_weight
+        assign weight = {WEIGHT_BITS{1'b0}};
+      end else begin : gen_material_weight  // interval 0 stands for all
         wire [COEFFICIENT_BITS-1:0] left;
 
         small_ram #(
@@ -204,17 +212,42 @@ module shading_unit #(
         assign weight = {left, {WEIGHT_FRACTION - COEFFICIENT_FRACTION{1'b0}}};
       end
 
-      multiplier #(
-          .A_BITS  (WEIGHT_BITS),
-          .B_BITS  (POWER_BITS),
-          .A_SIGNED(0),
-          .B_SIGNED(0)
-      ) u_specular (
-          .clk(clk),
-          .a(weight),
-          .b(power),
-          .product(specular)
-      );
+      if (CONSTANT_WEIGHT) begin : gen_constant_product
+        constant_multiplier #(
+            .BITS(POWER_BITS),
+            .IS_SIGNED(0),
+            .CONSTANT(`PHONG_CONSTANT_WEIGHT_W << (WEIGHT_FRACTION - COEFFICIENT_FRACTION)),
+            .CONSTANT_BITS(WEIGHT_BITS),
+            .LATENCY(`PHONG_PRODUCTS_LATENCY)
+        ) u_specular (
+            .clk(clk),
+            .word(power),
+            .product(specular)
+        );
+      end else begin : gen_product
+        wire [WEIGHT_BITS+POWER_BITS-1:0] product;
+
+        multiplier #(
+            .A_BITS  (WEIGHT_BITS),
+            .B_BITS  (POWER_BITS),
+            .A_SIGNED(0),
+            .B_SIGNED(0)
+        ) u_specular (
+            .clk(clk),
+            .a(weight),
+            .b(power),
+            .product(product)
+        );
+
+        delay #(
+            .BITS  (WEIGHT_BITS + POWER_BITS),
+            .CYCLES(`PHONG_PRODUCTS_LATENCY - `PHONG_MULTIPLIER_LATENCY)
+        ) u_wait (
+            .clk(clk),
+            .in (product),
+            .out(specular)
+        );
+      end
     end else begin : gen_no_specular
       assign specular = {WEIGHT_BITS + POWER_BITS{1'b0}};
     end
@@ -226,7 +259,12 @@ module shading_unit #(
   genvar c;
   generate
     for (c = 0; c < CHANNELS; c = c + 1) begin : gen_channel
-      colour_channel u_channel (
+      colour_channel #(
+          .AMBIENT(c == 0 ? `PHONG_CONSTANT_AMBIENT_RED
+                 : c == 1 ? `PHONG_CONSTANT_AMBIENT_GREEN : `PHONG_CONSTANT_AMBIENT_BLUE),
+          .DIFFUSION(c == 0 ? `PHONG_CONSTANT_DIFFUSE_RED
+                   : c == 1 ? `PHONG_CONSTANT_DIFFUSE_GREEN : `PHONG_CONSTANT_DIFFUSE_BLUE)
+      ) u_channel (
           .clk(clk),
           .write_ambient(write_ambient[c]),
           .write_diffuse(write_diffuse[c]),

@@ -33,7 +33,8 @@ def module_bench(name: str) -> ModuleBench:
         return ModuleBench(name, primitives.TOP, "tests.modules.primitives", sources)
     if name in MODULES:
         top, text = bench_source(name)
-        return ModuleBench(name, top, "tests.modules.datapath", {f"{top}.v": text})
+        tests = f"tests.modules.{MODULES[name].tests}"
+        return ModuleBench(name, top, tests, {f"{top}.v": text})
     if name in _OLDER:
         tests = "tests.modules.phong_pipeline"
         return ModuleBench(name, "pipeline_bench", tests, config=TECHNIQUES[name])

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from model.config import DEFAULT
+
 
 @dataclass(frozen=True)
 class Stage:
@@ -41,6 +43,7 @@ class Module:
     held: tuple[tuple[str, int | str], ...] = ()
     children: tuple[Child, ...] = ()
     late: dict[str, str] = field(default_factory=dict)  # inputs wanted some clocks later
+    tests: str = "datapath"  # the file of tests/modules/ that tests it
 
 
 L = "`PHONG_{}_LATENCY"
@@ -94,6 +97,7 @@ MODULES = {
             Stage("inverse_sqrt_quadratic.refine", ("line_p9",), _sum(1, ROM, MUL, 1, MUL, 1)),
             Stage("inverse_sqrt_quadratic.round", ("root",), L.format("INVERSE_SQRT_QUADRATIC")),
         ),
+        tests="methods",
     ),
     "newton_step": Module(
         ("x", "y"),
@@ -102,13 +106,17 @@ MODULES = {
             Stage("newton_step.error", ("+error_p7",), _sum(MUL, ROUND, MUL, 1)),
             Stage("newton_step.better", ("better",), L.format("NEWTON_STEP")),
         ),
+        tests="methods",
     ),
     "inverse_sqrt_iterated": Module(
         ("operand",),
         (
             Stage("inverse_sqrt_iterated.start", ("start_p3",), L.format("INVERSE_SQRT_START")),
-            Stage("inverse_sqrt_iterated.steps", ("root",), "dut.LATENCY"),
+            Stage(
+                "inverse_sqrt_iterated.steps", ("root",), L.format("INVERSE_SQRT_ITERATED")
+            ),
         ),
+        tests="methods",
     ),
     "unnormalized": Module(
         ("x", "y", "z"),
@@ -120,6 +128,7 @@ MODULES = {
             Stage("unnormalized.lit", ("lit",), L.format("UNNORMALIZED")),
         ),
         held=(("two_sided", 1),),
+        tests="methods",
     ),
     "normalizer": Module(
         ("x", "y", "z"),
@@ -181,6 +190,35 @@ MODULES = {
     ),
     "specular_cosine": Module(
         ("versine",), (Stage("specular_cosine", ("cosine",), L.format("SPECULAR_COSINE")),)
+    ),
+    "power_squaring": Module(
+        ("versine", "exponent"),
+        (
+            *(
+                Stage(
+                    f"power_squaring.stage_{j}",
+                    (f"gen_stage[{j}].base_p5", f"gen_stage[{j}].result_p5"),
+                    _sum(L.format("SPECULAR_COSINE"), *[L.format("SQUARING_STAGE")] * (j + 1)),
+                )
+                for j in range(DEFAULT.exponent.integer - 1)
+            ),
+            Stage("power_squaring.last", ("power",), L.format("POWER_SQUARING")),
+        ),
+        late={"exponent": _sum(L.format("SPECULAR_COSINE"), -1)},
+        tests="methods",
+    ),
+    "power_schlick": Module(
+        ("versine", "exponent"),
+        (
+            Stage("power_schlick.denominator", ("denominator_p5",), _sum(ROUND, MUL, 1)),
+            Stage("power_schlick.normalize", ("m_p9",), _sum(ROUND, MUL, 1, ZEROS, SHIFT)),
+            Stage(
+                "power_schlick.reciprocal", ("reciprocal_p16",),
+                _sum(ROUND, MUL, 1, ZEROS, SHIFT, ROM, MUL, 1, ROUND),
+            ),
+            Stage("power_schlick.quotient", ("power",), L.format("POWER_SCHLICK")),
+        ),
+        tests="methods",
     ),
     "specular_weight": Module(
         ("cosine", "material"),

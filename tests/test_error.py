@@ -11,9 +11,13 @@ from model import reference
 from model.config import DEFAULT as C
 from model.frame import SPAN_DTYPE, Frame, InputError, MaterialTable, half_vector_codes
 from model.metrics import error_metrics
+from model.sweep import CONFIGS
 from model.twin.inverse_sqrt import inverse_sqrt
+from model.twin.inverse_sqrt_method import inverse_sqrt_method
 from model.twin.normalizer import normalizer
 from model.twin.phong_pipeline import shade
+from model.twin.power_schlick import power_schlick
+from model.twin.power_squaring import power_squaring
 from model.twin.reflection import reflection
 from model.twin.specular_power import specular_power
 from model.twin.specular_weight import specular_weight
@@ -59,6 +63,56 @@ def test_inverse_sqrt_every_operand_within_its_bound():
     error = C.root.real(inverse_sqrt(operand, C)) * np.sqrt(C.root_operand.real(operand)) - 1
     assert np.abs(error).max() <= budget.inverse_sqrt(C)
     assert -np.log2(np.abs(error).max()) > 17.4  # good bits
+
+
+@pytest.mark.parametrize(
+    "config", [c for c in CONFIGS.values() if c.root_method != "lines"], ids=lambda c: c.name
+)
+def test_other_methods_for_inverse_sqrt_within_their_bounds(config):
+    operand = np.arange(config.root_operand.one, 4 * config.root_operand.one)
+    root = config.root.real(inverse_sqrt_method(operand, config))
+    error = np.abs(root * np.sqrt(config.root_operand.real(operand)) - 1).max()
+    assert error <= budget.inverse_sqrt(config) <= 2.2 * error
+
+
+def test_the_magic_start_is_what_float32_gives():
+    config = CONFIGS["magic_0"]
+    operand = np.arange(config.root_operand.one, 4 * config.root_operand.one)
+    x = config.root_operand.real(operand).astype(np.float32)
+    y = (0x5F3759DF - (x.view(np.int32) >> 1)).view(np.float32)
+    codes = np.floor(np.ldexp(y.astype(float), config.root.fraction))
+    assert np.array_equal(inverse_sqrt_method(operand, config), codes)
+
+
+@pytest.mark.parametrize("bits", [12, 18])
+@pytest.mark.parametrize("n", [1, 2, 10, 32, 77, 127, 128])
+def test_squaring_within_its_bound(bits, n):
+    config = CONFIGS[f"squaring_{bits}"]
+    v = np.arange(0, config.versine.one, 7)
+    power = power_squaring(v, np.full(len(v), n * config.exponent.one), config)
+    error = np.abs(config.power.real(power) - (1 - config.versine.real(v)) ** n).max()
+    assert error <= budget.specular_power(n, config) <= 4 * error
+
+
+def test_squaring_rounds_n():
+    config = CONFIGS["squaring_18"]
+    v = np.arange(0, config.versine.one, 101)
+    for n, whole in ((1.5, 2), (2.25, 2), (127.5, 128)):
+        codes = [power_squaring(v, np.full(len(v), config.exponent.quantize(k)), config)
+                 for k in (n, whole)]  # fmt: skip
+        assert np.array_equal(*codes)
+    assert not budget.derived(config, 1.5) and budget.derived(config, 2.0)
+
+
+@pytest.mark.parametrize("n", [1, 1.5, 10, 128])
+def test_schlick_is_schlicks_formula(n):
+    config = CONFIGS["schlick_18"]
+    v = np.arange(0, config.versine.one, 7)
+    power = power_schlick(v, np.full(len(v), config.exponent.quantize(n)), config)
+    x = 1 - config.versine.real(v)
+    # v rounded, times n - 1, against a denominator of 1 or more; five roundings and cuts.
+    bound = (n - 1) * config.power.lsb / 2 + 5 * config.power.lsb
+    assert np.abs(config.power.real(power) - x / (n - n * x + x)).max() <= bound
 
 
 def test_inverse_sqrt_of_zero_is_the_largest_code():

@@ -30,13 +30,14 @@ def outcome(results, folder) -> list[str]:
     return [case.get("name") for case in failed] + (said if failed else [])
 
 
-def run(bench: Bench, module: str, tests: str, folder) -> None:
-    """Run the cocotb tests `tests` of `module` in `bench`."""
+def run(bench: Bench, module: str, tests: str, folder, config: str = "default") -> None:
+    """Run the cocotb tests `tests` of `module` in `bench`, built for the configuration `config`."""
     with contextlib.suppress(SystemExit):  # how the runner says inside pytest that a test failed
         bench.run(
             tests, folder, seed=SEED,
             extra_env={
-                "PHONG_MODULE": module, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)
+                "PHONG_MODULE": module, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED),
+                "PHONG_CONFIG": config,
             },
         )  # fmt: skip
     failures = outcome(folder / "results.xml", folder)

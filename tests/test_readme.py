@@ -7,7 +7,8 @@ import numpy as np
 from model import error_budget, registers, spans
 from model.config import DEFAULT as C
 from model.config import TECHNIQUES
-from sim.build import ROOT, RTL
+from sim.build import ROOT
+from sim.elaborate import instances
 from sim.formal.proofs import PROOFS
 from sim.latency import latencies
 from tests.test_error import frame_of
@@ -50,23 +51,10 @@ def test_formats():
 
 
 def test_the_multipliers_are_counted():
-    """19 DSP multipliers in the default build, all of at most 18 x 18 bits."""
-    per_instance = {"normalizer": {"gen_component": 3}, "shading_unit": {"gen_channel": 3}}
-
-    def count(module):
-        text = (RTL / f"{module}.v").read_text()
-        total = 0
-        for child, name in re.findall(r"^\s*(\w+)(?:\s*#\(.*?\))?\s+(u_\w+) \(", text, re.M | re.S):
-            times = 1
-            for block, copies in per_instance.get(module, {}).items():
-                start = text.index("begin : " + block)
-                inside = text[start : text.index("endgenerate", start)]
-                times = copies if f" {name} (" in inside else times
-            total += times * (1 if child == "multiplier" else count(child))
-        return total
-
-    assert f"The default configuration has {count('phong_pipeline')} multipliers" in README
-    assert count("phong_pipeline") <= 19
+    """In the default configuration, as it is elaborated."""
+    count = instances()["multiplier"]
+    assert f"The default configuration has {count} multipliers" in README
+    assert count <= 19
 
 
 def test_the_proofs_are_counted():

@@ -5,7 +5,15 @@ import numpy as np
 import pytest
 
 from model.config import DEFAULT as C
-from model.tables import exp_table, inverse_sqrt_table, log_table, tables
+from model.sweep import CONFIGS
+from model.tables import (
+    exp_table,
+    inverse_sqrt_parabolas,
+    inverse_sqrt_start,
+    inverse_sqrt_table,
+    log_table,
+    reciprocal_table,
+)
 
 mpmath.mp.prec = 120
 
@@ -54,14 +62,23 @@ def exp_lines():
         yield *line, C.exp_value.one, C.exp_value.one
 
 
+def reciprocal_lines():
+    segments = 1 << C.reciprocal_index_bits
+    for k in range(segments):
+        a, b = mpmath.mpf(segments + k) / segments, mpmath.mpf(segments + k + 1) / segments
+        line = best_line(lambda x: 1 / x, lambda m: 1 / mpmath.sqrt(-m), a, b)
+        yield *line, 1 << C.reciprocal_value_bits, 1 << C.reciprocal_value_bits
+
+
 @pytest.mark.parametrize(
     "table, lines",
     [
         (inverse_sqrt_table(C), inverse_sqrt_lines),
         (log_table(C), log_lines),
         (exp_table(C), exp_lines),
+        (reciprocal_table(C), reciprocal_lines),
     ],
-    ids=["inverse_sqrt", "log", "exp"],
+    ids=["inverse_sqrt", "log", "exp", "reciprocal"],
 )
 def test_every_entry(table, lines):
     expected = list(lines())
@@ -76,7 +93,8 @@ def test_every_entry(table, lines):
 
 
 def test_words_hold_value_and_slope():
-    for table in tables(C):
+    lines = inverse_sqrt_table(C), log_table(C), exp_table(C), reciprocal_table(C)
+    for table in lines:
         assert np.array_equal(table.words >> table.slope_bits, table.value)
         assert np.array_equal(table.words & ((1 << table.slope_bits) - 1), table.slope)
         assert table.words.max() < 1 << (table.value_bits + table.slope_bits)
@@ -84,3 +102,38 @@ def test_words_hold_value_and_slope():
 
 def test_the_logarithm_of_one_is_zero():
     assert log_table(C).value[0] == 0
+
+
+def _segments(index_bits):
+    for octave in (1, 2):
+        for k in range(1 << index_bits):
+            a = mpmath.mpf(octave) * ((1 << index_bits) + k) / (1 << index_bits)
+            yield a, a + mpmath.mpf(octave) / (1 << index_bits)
+
+
+@pytest.mark.parametrize("name", ["default", "parabolas_4", "width_10"])
+def test_every_parabola(name):
+    """Through the curve at the roots of Chebyshev's polynomial, by solving for it."""
+    config = CONFIGS[name]
+    table = inverse_sqrt_parabolas(config)
+    scale = mpmath.mpf(2) ** config.quadratic_value_bits
+    points = [(1 + mpmath.cos(mpmath.pi * k / 6)) / 2 for k in (1, 3, 5)]
+    matrix = mpmath.matrix([[1, t, t * t] for t in points])
+    for k, (a, b) in enumerate(_segments(config.quadratic_index_bits)):
+        curve = mpmath.matrix([1 / mpmath.sqrt(a + (b - a) * t) for t in points])
+        value, slope, bend = mpmath.lu_solve(matrix, curve)
+        want = [int(mpmath.floor(c + mpmath.mpf(1) / 2)) for c in
+                (value * scale, -slope * scale * 8, bend * scale * 8)]  # fmt: skip
+        want[0] = min(want[0], (1 << table.value_bits) - 1)
+        assert want == [table.value[k], table.slope[k], table.curve[k]], k
+        word = want[0] << (table.slope_bits + table.curve_bits) | want[1] << table.curve_bits
+        assert table.words[k] == word | want[2]
+
+
+@pytest.mark.parametrize("name", ["default", "table_8", "table_2048"])
+def test_every_constant(name):
+    config = CONFIGS[name]
+    for k, (a, b) in enumerate(_segments(config.start_index_bits)):
+        middle = (1 / mpmath.sqrt(a) + 1 / mpmath.sqrt(b)) / 2
+        code = int(mpmath.floor(middle * config.root.one + mpmath.mpf(1) / 2))
+        assert inverse_sqrt_start(config).words[k] == code, k

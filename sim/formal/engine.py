@@ -19,7 +19,7 @@ FOLDER = build.BUILD / "formal"
 _HERE = Path(__file__).resolve().parent
 _BIN = Path(sys.executable).parent
 #: The datapath, which the proofs of the whole pipeline cut away: any colour comes out of it.
-_DATAPATH = "phong_pipeline/gen_phong.u_shading_unit"
+_DATAPATH = "phong_unit/u_shading_unit"
 
 
 class SetupError(Exception):

@@ -80,7 +80,7 @@ _INTERPOLATOR_TWINS = (
 )  # fmt: skip
 _PIPELINE = "spans in, their pixels out, in order, after a constant time, at full rate; flags"
 _PIPELINE_TWINS = (
-    Twin("phong_pipeline", "overflow = overflow_x | overflow_y | overflow_z;",
+    Twin("phong_unit", "overflow = overflow_x | overflow_y | overflow_z;",
          "overflow = overflow_x | overflow_y;", "a_illegal"),
     Twin("normalizer", "& ~sign_p3 &", "&", "a_zero"),
     Twin("phong_pipeline", ".out_ready(m_axis_tready),", ".out_ready(1'b1),", "a_stable"),

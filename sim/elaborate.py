@@ -1,0 +1,43 @@
+"""What a configuration is made of: the instances that Verilator elaborates."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections import Counter
+from collections.abc import Iterator
+
+from model.config import DEFAULT, Config
+from sim.build import RTL, generate_header, run_tool
+
+
+def instances(config: Config = DEFAULT, top: str = "phong_pipeline") -> Counter[str]:
+    """How many instances of each module there are in `top`, itself included. Raises BuildError."""
+    with tempfile.TemporaryDirectory() as folder:
+        run_tool(
+            [
+                "verilator", "--json-only", "--no-timing", "-Wno-fatal", "--Mdir", folder,
+                "--top-module", top, f"-I{generate_header(config)}", f"-I{RTL}", RTL / f"{top}.v",
+            ]
+        )  # fmt: skip
+        with open(f"{folder}/V{top}.tree.json") as file:
+            modules = {module["addr"]: module for module in json.load(file)["modulesp"]}
+
+    def count(module: dict) -> Counter[str]:
+        found = Counter([module.get("origName") or module["name"]])
+        for cell in _cells(module["stmtsp"]):
+            found += count(modules[cell["modp"]])
+        return found
+
+    return count(next(m for m in modules.values() if m["name"] == top))
+
+
+def _cells(node) -> Iterator[dict]:
+    """The instances somewhere in a tree of Verilator's."""
+    if isinstance(node, dict):
+        if node.get("type") == "CELL":
+            yield node
+        node = list(node.values())
+    if isinstance(node, list):
+        for child in node:
+            yield from _cells(child)

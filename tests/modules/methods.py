@@ -1,0 +1,145 @@
+"""cocotb tests of the modules of other methods (see model/sweep.py), as those of the datapath.
+
+Run by tests/test_modules.py in the default configuration, by tests/test_sweep.py in others.
+"""
+
+from __future__ import annotations
+
+import os
+
+import cocotb
+import numpy as np
+
+from model.sweep import CONFIGS
+from model.twin.inverse_sqrt_iterated import inverse_sqrt_iterated
+from model.twin.inverse_sqrt_quadratic import inverse_sqrt_quadratic
+from model.twin.newton_step import newton_step
+from model.twin.power_schlick import power_schlick
+from model.twin.power_squaring import power_squaring
+from model.twin.unnormalized import unnormalized
+from sim.unit_tb import UnitTB
+from tests.modules.datapath import _edges, _normals
+
+C = CONFIGS[os.environ.get("PHONG_CONFIG", "default")]
+SEED = int(os.environ.get("PHONG_SEED", "75"))
+RANDOM = 200_000
+MODULE = os.environ["PHONG_MODULE"]
+NOTE = f"configuration {C.name}, seed {SEED}"
+
+
+def _only(*modules: str):
+    """The tests of other modules do not exist in this module's simulation."""
+    return cocotb.test() if MODULE in modules else lambda test: test
+
+
+# -- 1/sqrt ---------------------------------------------------------------------------------------
+
+_ROOTS = {
+    "inverse_sqrt_quadratic": (inverse_sqrt_quadratic, "inverse_sqrt_quadratic.round"),
+    "inverse_sqrt_iterated": (inverse_sqrt_iterated, "inverse_sqrt_iterated.steps"),
+}
+
+
+@_only(*_ROOTS)
+async def inverse_sqrt_exhaustive(dut):
+    """Every operand, those below 1 included."""
+    tb = UnitTB(dut, MODULE)
+    for first in range(0, 1 << C.root_operand.bits, 1 << 20):
+        operand = np.arange(first, first + (1 << 20))
+        trace = {}
+        _ROOTS[MODULE][0](operand, C, trace)
+        await tb.check([operand], trace, NOTE)
+
+
+@_only(*_ROOTS)
+async def inverse_sqrt_latency(dut):
+    """One operand at a time shows at the stated clock only."""
+    one = C.root_operand.one
+    await UnitTB(dut, MODULE).check_latency([one], [3 * one], _ROOTS[MODULE][1])
+
+
+@_only("newton_step")
+async def newton_step_random(dut):
+    """Any operand with any estimate within 11 % of its root, and with the largest code."""
+    tb = UnitTB(dut, MODULE)
+    rng = np.random.default_rng(SEED)
+    bits = C.root.bits
+    x = rng.integers(1 << (bits - 2), 1 << bits, RANDOM)
+    x[:1000] = (1 << (bits - 2)) + np.arange(1000)
+    x[1000:2000] = (1 << bits) - 1 - np.arange(1000)
+    root = np.sqrt((1 << (bits - 2)) / x)
+    y = C.root.quantize(root * rng.uniform(0.89, 1.11, RANDOM))
+    y = np.where(rng.random(RANDOM) < 0.1, C.root.quantize(root), y)
+    trace = {}
+    newton_step(x, y, C, trace)
+    await tb.check([x, y], trace, NOTE)
+
+
+@_only("newton_step")
+async def newton_step_latency(dut):
+    """One estimate at a time shows at the stated clock only."""
+    one, y = 1 << (C.root.bits - 2), C.root.max
+    await UnitTB(dut, MODULE).check_latency(
+        [one, y], [one, C.root.quantize(0.95)], "newton_step.better"
+    )
+
+
+# -- normals --------------------------------------------------------------------------------------
+
+
+@_only("unnormalized")
+async def unnormalized_random(dut):
+    """Random and extreme normals, one- and two-sided."""
+    tb = UnitTB(dut, MODULE)
+    for two_sided in (0, 1):
+        await tb.hold(two_sided=two_sided)
+        normal = _normals(np.random.default_rng(SEED + two_sided), RANDOM)
+        trace = {}
+        unnormalized(normal, bool(two_sided), C, trace)
+        await tb.check(list(normal), trace, NOTE)
+
+
+@_only("unnormalized")
+async def unnormalized_latency(dut):
+    """One normal at a time shows at the stated clock only."""
+    tb = UnitTB(dut, MODULE)
+    half = C.normal.one // 2
+    await tb.check_latency([half, 0, 0], [0, half, half], "unnormalized.round")
+    await tb.check_latency([half, 0, 0], [half, 0, 1], "unnormalized.lit")
+
+
+# -- cos(s)^n -------------------------------------------------------------------------------------
+
+_POWERS = {
+    "power_squaring": (power_squaring, "power_squaring.last"),
+    "power_schlick": (power_schlick, "power_schlick.quotient"),
+}
+
+
+@_only(*_POWERS)
+async def power_random(dut):
+    """Random operands for random exponents, all versines near both ends, and any word as n."""
+    tb = UnitTB(dut, MODULE)
+    rng = np.random.default_rng(SEED)
+    v = np.concatenate([
+        np.arange(20000), C.versine.max - np.arange(20000), _edges(C.versine, rng, RANDOM),
+    ])  # fmt: skip
+    one = C.exponent.one
+    special = (np.array([1, 1.5, 2, 10, 20, 32, 64, 127, 127.5, 128]) * one).astype(np.int64)
+    n = rng.integers(one, 128 * one + 1, len(v))
+    n = np.where(rng.random(len(v)) < 0.5, rng.choice(special, len(v)), n)
+    n = np.where(rng.random(len(v)) < 0.05, rng.integers(0, C.exponent.max + 1, len(v)), n)
+    trace = {}
+    _POWERS[MODULE][0](v, n, C, trace)
+    await tb.check([v, n], trace, NOTE)
+
+
+@_only(*_POWERS)
+async def power_latency(dut):
+    """One operand at a time shows at the stated clock only, the exponent alone, too."""
+    tb = UnitTB(dut, MODULE)
+    some, one = C.versine.one // 16, C.exponent.one
+    stage = _POWERS[MODULE][1]
+    await tb.check_latency([0, 2 * one], [some, 2 * one], stage)
+    await tb.check_latency([some, 2 * one], [some, 5 * one], stage)
+    await tb.check_latency([some, 2 * one], [some, 128 * one], stage)
