@@ -1,9 +1,9 @@
-"""Error against the true surface, over meshes from coarse to fine: part of `make sweep`.
+"""Error against the true surface, over meshes from coarse to fine: `make tessellation`.
 
 Sphere, torus and teapot patch through the RTL by every technique, and in the model alone by the
 cubic interpolant that Phong (1975) mentions. Writes build/sweep/tessellation.csv, .json (orders of
-convergence, highlights, the paper's claims), .png and .svg. Exit code: 0; 1 if a pixel of RTL and
-model differs.
+convergence, and techniques against each other), .png and .svg; and what scripts/sweep_arguments.py
+writes. Exit code: 0; 1 if a pixel of RTL and model differs.
 """
 
 from __future__ import annotations
@@ -21,10 +21,13 @@ from model import metrics, tessellation, twin
 from model.charts import tessellation_chart
 from model.config import TECHNIQUES
 from model.surfaces import SURFACES
+from scripts import records, sweep_arguments
 from sim.build import BUILD
 from sim.run_frame import Job, SimulationError, simulate_jobs
 
 FOLDER = BUILD / "sweep"
+#: Meshes that the README shows.
+SHOWN = {"sphere": 32, "torus": 32, "patch": 8}
 #: cycles are empty for the cubic, which has no hardware. The errors are those of the codes that
 #: came out of the RTL; method_...: of the technique itself, before any rounding (for the cubic
 #: both are); facing: dots whose normal is within 60 degrees of the eye; highlight: dots with more
@@ -169,16 +172,66 @@ def table(found: dict) -> Table:
     return out
 
 
+def readme(rows: list[dict], found: dict) -> str:
+    """The README's table and sentences, Markdown, of `rows` and of what `sweep_arguments.run`
+    found."""
+    methods = ("flat", "gouraud", "phong", "cubic")
+    orders = summary(rows)["orders"]
+    lines = [
+        "| mesh | what | flat | Gouraud | Phong | cubic, model only |",
+        "|---|---|--:|--:|--:|--:|",
+    ]
+
+    def line(what: str, values, mesh: str = ""):
+        cells = [f"{v:.2f}" if isinstance(v, float) else v for v in values]
+        lines.append(f"| {mesh} | {what} | {' | '.join(cells)} |")
+
+    for shape, level in SHOWN.items():
+        own = {r["technique"]: r for r in rows if (r["shape"], r["level"]) == (shape, level)}
+        mesh = f"{shape}, {own['flat']['triangles']} triangles"
+        line("RMS error, LSB", [own[m]["method_rms_lsb"] for m in methods], mesh)
+        line("in the highlight", [own[m]["highlight_rms_lsb"] for m in methods])
+        line("order of convergence", [orders[shape][m]["facing_rms"] for m in methods])
+        jumps = found["mach_bands"][shape][level]
+        line(
+            "jump of the slope at edges, LSB a dot",
+            ["not smooth", *(jumps[m]["slope_mean"] for m in methods[1:3]), ""],
+        )
+    for shape, by in found["flicker"].items():
+        line(
+            "change in 1° of turning, LSB, RMS", [*(by[m]["change_rms"] for m in methods[:3]), ""],
+            f"{shape}, turning into itself",
+        )  # fmt: skip
+        line(
+            "brightest code, over 30 pictures",
+            [*("{} to {}".format(*by[m]["peak_range"]) for m in methods[:3]), ""],
+        )
+    square = found["orientation"]
+    for kind, name in (("quadrilateral", "square as one polygon"), ("triangles", "two triangles")):
+        line(
+            "largest dependence on orientation, LSB",
+            ["", square[kind]["largest_spread_lsb"], "", ""], name,
+        )  # fmt: skip
+    return "\n".join(lines)
+
+
 def main() -> int:
-    """Run and print; returns the exit code."""
+    """Measure all, print it, and keep what the README shows; returns the exit code."""
     console = Console(stderr=True)
     try:
         rows = run(lambda text: console.print(f"{text} ..."))
+        found = sweep_arguments.run(lambda text: console.print(f"{text} ..."))
     except SimulationError as error:
         print(f"Error: {error}", file=sys.stderr)
         return 1
     Console().print(table(summary(rows)))
-    print(f"{FOLDER / 'tessellation'}: .csv .json .png .svg")
+    Console().print(sweep_arguments.table(found))
+    records.save(
+        "tessellation", "make tessellation", ("verilator", "numpy"), [],
+        readme=readme(rows, found),
+        meshes=[row for row in rows if SHOWN[row["shape"]] == row["level"]],
+    )  # fmt: skip
+    print(f"{FOLDER}: tessellation and arguments: .csv .json .png .svg")
     return 0
 
 

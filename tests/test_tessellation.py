@@ -13,10 +13,12 @@ from model.mesh import normalize
 from model.scene_to_spans import front_end
 from model.surfaces import SURFACES
 from model.twin import render
-from scripts import sweep_arguments, sweep_tessellation
+from scripts import records, sweep_arguments, sweep_tessellation
+from sim.build import ROOT
 
 RNG = np.random.default_rng(75)
 SIZE = (120, 90)
+README = (ROOT / "README.md").read_text()
 
 
 # -- surfaces --------------------------------------------------------------------------------------
@@ -193,3 +195,22 @@ def test_highlights_are_looked_for_where_they_are():
     right, up, _ = scene.camera.axes
     assert (x.mean() + 0.5 - SIZE[0] / 2) * step == pytest.approx(half @ right, abs=0.05)
     assert -(y.mean() + 0.5 - SIZE[1] / 2) * step == pytest.approx(half @ up, abs=0.05)
+
+
+# -- what the README shows -------------------------------------------------------------------------
+
+
+def test_the_readme_shows_the_record():
+    record = records.load("tessellation")
+    assert record["readme"] in README, "the README's table is old: make tessellation"
+
+
+def test_the_record_is_what_is_measured_now():
+    """One mesh of the record anew, at full size and through the RTL."""
+    kept = [row for row in records.load("tessellation")["meshes"] if row["shape"] == "sphere"]
+    for old, new in zip(
+        kept, sweep_tessellation.measure("sphere", (kept[0]["level"],)), strict=True
+    ):
+        for name, value in old.items():
+            same = new[name] == (value if type(value) is not float else pytest.approx(value, 1e-6))
+            assert same, (old["technique"], name, value, new[name])
