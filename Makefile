@@ -21,7 +21,7 @@ PYTHON := .venv/bin/python
 quote = '$(subst ','\'',$(1))'
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run prune test lint results bench sweep synth netlist icarus formal coverage activity mutate \
+.PHONY: help setup run prune test lint results bench sweep tessellation synth netlist icarus formal coverage activity mutate \
   hardware waves clean
 
 help: ## this list
@@ -54,6 +54,8 @@ help: ## this list
 	@echo 'make sweep    error against run time and hardware over word widths and methods; build/sweep/'
 	@echo '                AREA=1          synthesize each configuration, too, for its size'
 	@echo '                ROUTE=1         place and route each, too, for its clock: hours'
+	@echo 'make tessellation  error against true surfaces, from coarse to fine meshes; Mach bands,'
+	@echo '                flicker, orientation; part of make sweep, a minute'
 	@echo 'make netlist  whole frames through the netlist in ECP5 cells, against the model'
 	@echo 'make coverage line, branch and toggle coverage of rtl/ by the module and frame tests'
 	@echo 'make activity register toggles a pixel of every bundled scene'
@@ -113,6 +115,10 @@ results: setup
 
 sweep: setup
 	@$(PYTHON) -m scripts.sweep --area=$(call quote,$(AREA)) --route=$(call quote,$(ROUTE))
+	@$(PYTHON) -m scripts.sweep_tessellation
+
+tessellation: setup
+	@$(PYTHON) -m scripts.sweep_tessellation
 
 synth: setup
 	@$(PYTHON) -m scripts.synth --config=$(call quote,$(CONFIG)) \
