@@ -36,6 +36,7 @@ help: ## this list
 	@echo '                PRUNE=1         build without what the scene does not need; or PRUNE=SCENE:'
 	@echo '                                without what that one does not need'
 	@echo 'make prune    what SCENE needs of the pipeline, and why; SCENE=all: what that saves'
+	@echo 'make prune-random SCENES=200 random scenes, each on the build pruned to it (a quarter of an hour)'
 	@echo 'make test     lint, then all tests'
 	@echo 'make lint     Verilator -Wall and Verible on rtl/ and sim/, Ruff on Python'
 	@echo 'make results  the README'"'"'s table of results, measured anew'
@@ -81,7 +82,14 @@ run: setup
 	  --prune=$(call quote,$(PRUNE))
 
 prune: setup
-	@$(PYTHON) -m scripts.prune --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE))
+	@$(PYTHON) -m scripts.prune --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE)) \
+	  --seeds=$(call quote,$(SEEDS))
+
+.PHONY: prune-random
+SCENES ?= 200
+
+prune-random: setup
+	@PHONG_RANDOM_SCENES=$(call quote,$(SCENES)) $(PYTHON) -m pytest tests/test_pruning.py -k random_scene
 
 test: lint
 	@$(PYTHON) -m pytest
