@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from model.frame import InputError
 from model.scene import bundled_scenes
 from scripts import report
 from scripts import run as run_scene
@@ -70,6 +71,10 @@ def build(tmp_path_factory):
          "p999_lsb": 20 / 4**k, "mean_lsb": 3 / 4**k}
         for j, t in enumerate(("flat", "Gouraud", "Phong")) for k in range(4)
     ])  # fmt: skip
+    orders = {"method_rms": 1.83, "facing_rms": 2.0, "highlight_rms": 1.99}
+    (build / "sweep" / "tessellation.json").write_text(json.dumps(
+        {"orders": {"sphere": {t: orders for t in ("phong", "gouraud", "flat")}}}
+    ))  # fmt: skip
     row = {"scene": "sphere", "size": "160×120", "pixels": 9000, "spans": 500, "cycles": 9075,
            "fps": 22000.0, "mismatches": 0, "max_lsb": 0.5, "bound_lsb": 0.55}  # fmt: skip
     (build / "results.json").write_text(json.dumps(
@@ -120,6 +125,7 @@ def test_the_numbers_are_those_of_the_runs(html, build):
         )
         assert f"0 of {found['pixels']:,} pixels".replace(",", " ") in html
     assert "201 MHz" in html and "make other" in html and "it broke" in html
+    assert "1.83, 2.00, 1.99" in html and "the frame is one-sided" in html
     assert "&lt;b&gt;bad&lt;/b&gt;" in html and "<b>bad</b>" not in html
 
 
@@ -151,16 +157,25 @@ def test_a_broken_file_is_named(build, tmp_path, capsys, monkeypatch):
         (tmp_path / name).unlink()
 
 
+def test_the_page_is_one_file(build, capsys, monkeypatch):
+    monkeypatch.setattr(report, "run_missing", lambda *_: None)
+    assert report.main(build) == 0
+    assert [p.name for p in (build / "report").iterdir()] == ["index.html"]
+    assert "report/index.html: " in capsys.readouterr().out
+
+
 def test_scenes_without_a_current_result_are_run(build, monkeypatch, capsys):
     ran = []
-    monkeypatch.setattr(report.run_scene, "main", lambda argv: ran.append(argv[0]) or 0)
-    report.run_missing(list(SCENES), build, run_scene.Steps())
-    assert not ran
-    report.run_missing([*SCENES, "cone"], build, run_scene.Steps())
-    assert ran == ["--scene=cone"]
+    monkeypatch.setattr(report.run_scene, "main", lambda argv: ran.append(" ".join(argv[:2])) or 0)
+    report.run_missing(list(SCENES), build)
+    others = [f"--scene=pyramid --technique={t}" for t in ("gouraud", "flat")]
+    assert ran == others  # the sphere is there in all three
     monkeypatch.setattr(report, "newest_source", lambda: 4e9)
-    report.run_missing(list(SCENES), build, run_scene.Steps())
-    assert ran[1:] == ["--scene=pyramid", "--scene=sphere"]
+    report.run_missing(["sphere"], build)
+    assert ran[2:] == [f"--scene=sphere --technique={t}" for t in ("phong", "gouraud", "flat")]
+    monkeypatch.setattr(report.run_scene, "main", lambda argv: 2)
+    with pytest.raises(InputError, match="make run SCENE=sphere TECHNIQUE=phong failed"):
+        report.run_missing(["sphere"], build)
 
 
 # -- in Chromium -----------------------------------------------------------------------------------
@@ -389,7 +404,7 @@ def test_nothing_is_without_a_name(visit, html):
 @browser
 def test_a_page_without_any_result(visit, tmp_path):
     page = visit(report.page(tmp_path, tmp_path))
-    assert page.locator(".missing:visible").count() == 7
+    assert page.locator(".missing:visible").count() == 8
 
 
 def test_every_bundled_scene_has_a_place(monkeypatch, tmp_path):
