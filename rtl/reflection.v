@@ -16,7 +16,7 @@ module reflection #(
     parameter HALF_FRACTION    = `PHONG_HALF_VECTOR_FRACTION,
     parameter VERSINE_BITS     = `PHONG_VERSINE_BITS,
     parameter VERSINE_FRACTION = `PHONG_VERSINE_FRACTION,
-    parameter CONSTANT         = `PHONG_CONSTANT_HALF_VECTOR,  // 1: h is a constant
+    parameter CONSTANT         = `PHONG_CONSTANT_HALF_VECTOR,    // 1: h is a constant
     parameter HALF_X           = `PHONG_CONSTANT_HALF_VECTOR_X,
     parameter HALF_Z           = `PHONG_CONSTANT_HALF_VECTOR_Z,  // 0 or more
     parameter LATENCY          = `PHONG_REFLECTION_LATENCY
