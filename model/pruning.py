@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .config import DEFAULT, Config
+from .config import DEFAULT, TECHNIQUES, Config
 from .frame import Frame
 from .twin.normalizer import leading_zeros
 from .twin.phong_pipeline import BLOCK, interpolate
@@ -115,6 +115,21 @@ def vanishing_exponent(config: Config) -> int:
     return (config.power.fraction + 1) << config.exponent.fraction
 
 
+_MATTE = dict(
+    specular=False, power_function=False, power_bypass=False, log_octaves=False,
+    weight_function=False, two_sided=False,
+)  # fmt: skip
+
+#: Configurations by hand, beside those of a scene. paper: W one number a material, "n from 1 to
+#: 10", one-sided, as in Phong 1975.
+BY_HAND = {
+    "paper": Config(name="paper", weight_function=False, two_sided=False),
+    "diffuse": Config(name="diffuse", **_MATTE),
+    "diffuse grey": Config(name="diffuse-grey", channels=1, **_MATTE),
+    "gouraud": TECHNIQUES["gouraud"],
+    "flat": TECHNIQUES["flat"],
+}
+
 #: Fields of `Config` that `prune` decides on.
 FEATURES = (
     "specular", "power_function", "power_bypass", "log_octaves", "weight_function", "diffuse",
@@ -174,21 +189,23 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
         "specular", shiny.any(), _some(int(shiny.sum()), count, "W is other than 0"),
         "reflection, power, W(i), the unit normal's x and y",
     )  # fmt: skip
+    tables = config.power_method == "tables"
     power = decide(
-        "power_function", (n != one).any(),
+        "power_function", (n != one).any() or (specular and config.power_method == "schlick"),
         _some(int((n != one).sum()), len(n), "n is other than 1") if specular else "no highlight",
-        "tables of log and exp, product with n",
+        "tables of log and exp, product with n" if tables else f"power by {config.power_method}",
     )  # fmt: skip
+    none = "no power" if not power else f"power by {config.power_method} has none"
     decide(
-        "power_bypass", power and (n == one).any(),
-        _some(int((n == one).sum()), len(n), "n is 1") if power else "n is 1 or nothing",
+        "power_bypass", power and ((n == one).any() or not tables),
+        _some(int((n == one).sum()), len(n), "n is 1") if power and tables else none,
         "cos(s) kept beside the power",
     )  # fmt: skip
     least, limit = min(n[n != one], default=0), vanishing_exponent(config)
     decide(
-        "log_octaves", power and least < limit,
-        f"smallest n is {config.exponent.real(least):g}; "
-        f"from {config.exponent.real(limit):g} on, 2^-n is 0" if power else "no power",
+        "log_octaves", power and (least < limit or not tables),
+        f"smallest n is {config.exponent.real(least):g}; from {config.exponent.real(limit):g} on, "
+        "2^-n is 0" if power and tables else none,
         "leading ones of 1 - cos(s) and their shifter",
     )  # fmt: skip
     varies = (f.weight != f.weight[:, :1]).any(axis=1)

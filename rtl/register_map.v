@@ -22,6 +22,8 @@ module register_map #(
     parameter CHANNELS         = `PHONG_CHANNELS,
     parameter TWO_SIDED        = `PHONG_TWO_SIDED,
     parameter CONSTANT_HALF_VECTOR = `PHONG_CONSTANT_HALF_VECTOR,
+    parameter CONSTANT_X           = `PHONG_CONSTANT_HALF_VECTOR_X,
+    parameter CONSTANT_Z           = `PHONG_CONSTANT_HALF_VECTOR_Z,
     parameter CONSTANT_EXPONENT    = `PHONG_CONSTANT_EXPONENT,
     parameter CONSTANT_WEIGHT      = `PHONG_CONSTANT_WEIGHT,
     parameter CONSTANT_AMBIENT     = `PHONG_CONSTANT_AMBIENT,
@@ -81,8 +83,8 @@ module register_map #(
   // ---- registers ----
   generate
     if (CONSTANT_HALF_VECTOR) begin : gen_constant_half_vector
-      assign half_x = `PHONG_CONSTANT_HALF_VECTOR_X;
-      assign half_z = `PHONG_CONSTANT_HALF_VECTOR_Z;
+      assign half_x = CONSTANT_X;
+      assign half_z = CONSTANT_Z;
     end else begin : gen_half_vector
       reg [HALF_BITS-1:0] x, z;
 

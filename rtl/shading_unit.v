@@ -153,7 +153,7 @@ module shading_unit #(
         wire [EXPONENT_BITS-1:0] exponent;
 
         if (CONSTANT_EXPONENT) begin : gen_constant_exponent
-          assign exponent = {EXPONENT_BITS{1'b0}};
+          assign exponent = `PHONG_CONSTANT_EXPONENT_N;
         end else begin : gen_exponent
           small_ram #(
               .ADDRESS_BITS(MATERIAL_BITS),

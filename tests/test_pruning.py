@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+import shutil
 
 import numpy as np
 import pytest
@@ -24,6 +25,7 @@ from tests.modules.frames import random_frame
 
 SEED = 1975
 SIZE = (96, 72)
+KEPT = 3  # random scenes in `make test`
 
 
 def plain(seed=SEED, spans: int = 300, longest: int = 12, **changes) -> Frame:
@@ -302,10 +304,44 @@ def random_scene(seed: int) -> Frame:
     return frame
 
 
-@pytest.mark.parametrize("seed", range(int(os.environ.get("PHONG_RANDOM_SCENES", "3"))))
+@pytest.mark.parametrize("seed", range(int(os.environ.get("PHONG_RANDOM_SCENES", KEPT))))
 def test_random_scene(seed):
     frame = random_scene(SEED + seed)
-    check(frame, pruning.prune(frame)[0])
+    config, _ = pruning.prune(frame)
+    check(frame, config)
+    if seed >= KEPT:  # nobody will run this build again
+        shutil.rmtree(Bench("frame_bench", config, quick=True).folder)
+
+
+@pytest.mark.parametrize("method", [
+    {"power_method": "squaring"}, {"power_method": "schlick"}, {"normal_method": "none"},
+    {"root_method": "table", "root_newton_steps": 1},
+])  # fmt: skip
+def test_other_methods_are_pruned_to_their_own_pixels(method):
+    config = dataclasses.replace(C, name="method", **method)
+    for seed in range(20):
+        frame = random_scene(SEED + seed)
+        pruned, _ = pruning.prune(frame, config)
+        assert all(getattr(pruned, name) == value for name, value in method.items())
+        own, full = twin.render(frame, pruned), twin.render(frame, config)
+        assert metrics.compare(full, own).mismatches == 0, seed
+
+
+def test_another_method_is_pruned_in_rtl():
+    frame = front_end(load_scene("teapot", SIZE)).frame
+    config = dataclasses.replace(C, power_method="squaring", root_method="quadratic")
+    pruned = pruning.prune(frame, config)[0]
+    result = simulate_jobs([Job(frame)], pruned, Bench("frame_bench", pruned, quick=True))[0]
+    compared = metrics.compare(twin.render(frame, config), result.pixels)
+    assert compared.mismatches == 0 and not result.unsupported, compared.first
+
+
+def test_a_sharp_power_is_the_same_without_octaves():
+    """Every versine, at the smallest exponent that leaves the octaves out."""
+    without_octaves = dataclasses.replace(C, log_octaves=False)
+    v = np.arange(C.versine.max + 1)
+    n = np.full(len(v), pruning.vanishing_exponent(C))
+    assert np.array_equal(specular_power(v, n, C), specular_power(v, n, without_octaves))
 
 
 # -- safety ----------------------------------------------------------------------------------------
