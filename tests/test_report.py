@@ -16,6 +16,7 @@ from model.frame import InputError
 from model.scene import bundled_scenes
 from scripts import report
 from scripts import run as run_scene
+from sim.build import ROOT
 
 RED, BLUE = (200, 30, 20), (20, 40, 200)
 SCENES = ("pyramid", "sphere")
@@ -140,7 +141,9 @@ def test_the_numbers_are_those_of_the_runs(html, build):
 
 def test_what_is_missing_names_its_command(tmp_path):
     html = report.page(tmp_path, tmp_path)
-    for command in ("make run", "make results", "make sweep", "make stability", "make synth"):
+    for target in ("run", "results", "sweep", "tessellation", "stability", "synth"):
+        command = f"make {target}"
+        assert f"{target}:" in (ROOT / "Makefile").read_text()
         assert f"run <code>{command}" in html, command
 
 
