@@ -213,14 +213,14 @@ def _axis(title: str, log: bool = False) -> dict:
     return {"title": {"text": title}, "type": "log" if log else "linear"}
 
 
-def _level(text: str, y: float | None) -> dict:
-    """A dashed line across a plot with a logarithmic axis, and what it is."""
+def _level(text: str, y: float | None, log: bool = False) -> dict:
+    """A dashed line across a plot, whose axis may be logarithmic, and what it is."""
     if y is None:
         return {}
     line = {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": y, "y1": y,
             "line": {"color": "#d3552b", "dash": "dash"}, "layer": "below"}  # fmt: skip
-    note = {"xref": "paper", "x": 0, "y": float(np.log10(y)), "text": text, "showarrow": False,
-            "yanchor": "bottom", "xanchor": "left"}  # fmt: skip
+    note = {"xref": "paper", "x": 0, "y": float(np.log10(y)) if log else y, "text": text,
+            "showarrow": False, "yanchor": "bottom", "xanchor": "left"}  # fmt: skip
     return {"shapes": [line], "annotations": [note]}
 
 
@@ -246,7 +246,7 @@ def budget_plot(results: dict, scenes: list[str]) -> dict:
         )  # fmt: skip
     limit = f"budget: {results['fps']:g} frames/s at {results['clock_hz'] / 1e6:g} MHz"
     return figure(
-        traces, barmode="group", yaxis=_axis("cycles a frame", True),
+        traces, barmode="group", yaxis=_axis("cycles a frame"),
         **_level(limit, results["cycles_available"]),
     )  # fmt: skip
 
@@ -316,7 +316,7 @@ def precision_plots(rows: list[dict]) -> dict[str, dict]:
                     )  # fmt: skip
             plots[f"{cost}/{error}"] = figure(
                 traces, xaxis=_axis(cost_title, True), yaxis=_axis(error_title, True),
-                hovermode="closest", **_level("perfect rounding", PERFECT.get(error)),
+                hovermode="closest", **_level("perfect rounding", PERFECT.get(error), log=True),
             )  # fmt: skip
     return plots
 
