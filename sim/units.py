@@ -246,7 +246,7 @@ MODULES = {
             ("write_diffuse", 3), *_TABLE_PORTS,
         ),
         children=(
-            Child("gen_specular.u_reflection", "reflection", "0"),
+            Child("gen_specular.gen_reflection.u_reflection", "reflection", "0"),
             Child(
                 "gen_specular.gen_power.u_specular_power", "specular_power",
                 L.format("REFLECTION"),

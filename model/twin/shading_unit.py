@@ -13,6 +13,7 @@ from .reflection import reflection
 from .specular_cosine import specular_cosine
 from .specular_power_method import specular_power_method
 from .specular_weight import constant_weight, specular_weight
+from .versine_of_parts import versine_of_parts
 
 
 def intensity(ambient, diffuse, cosine, weight, power, lit, config: Config):
@@ -39,13 +40,16 @@ def code(s, config: Config):
 def shading_unit(unit, cosine, lit, material, frame, config: Config, trace: dict | None = None):
     """Codes of red, green, blue, int64[3, n].
 
-    unit: int64[3, n] in `unit`; cosine: Zn in `cosine`; lit: bool[n]; material: int[n];
-    frame: model.frame.Frame (registers and material table).
+    unit: int64[3, n] in `unit`, as `normalizer` gives it; cosine: Zn in `cosine`; lit: bool[n];
+    material: int[n]; frame: model.frame.Frame (registers and material table).
     """
     table = frame.materials
     power = weight = np.zeros_like(cosine)
     if config.specular:
-        v = reflection(unit, frame.half_vector, config, trace)
+        if config.normal_method == "dot_first":
+            v = versine_of_parts(unit[1], unit[0], config)
+        else:
+            v = reflection(unit, frame.half_vector, config, trace)
         if config.power_function:
             power = specular_power_method(v, table.exponent[material], config, trace)
         else:
