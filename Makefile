@@ -21,7 +21,7 @@ PYTHON := .venv/bin/python
 quote = '$(subst ','\'',$(1))'
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run prune test lint results bench sweep synth netlist icarus formal coverage activity mutate \
+.PHONY: help setup run prune test lint results bench sweep tessellation synth netlist icarus formal coverage activity mutate \
   hardware waves clean
 
 help: ## this list
@@ -36,23 +36,27 @@ help: ## this list
 	@echo '                PRUNE=1         build without what the scene does not need; or PRUNE=SCENE:'
 	@echo '                                without what that one does not need'
 	@echo 'make prune    what SCENE needs of the pipeline, and why; SCENE=all: what that saves'
+	@echo 'make prune-random SCENES=200 random scenes, each on the build pruned to it (a quarter of an hour)'
 	@echo 'make test     lint, then all tests'
 	@echo 'make lint     Verilator -Wall and Verible on rtl/ and sim/, Ruff on Python'
 	@echo 'make results  the README'"'"'s table of results, measured anew'
-	@echo 'make report      one page of all results: build/report/index.html'
-	@echo 'make test-report the page in headless Chromium: what it draws, its controls'
-	@echo 'make test-all    make test and make test-report in one'
-	@echo 'make stability   stiff and extreme cases, a row each: error, bound, RTL against model'
-	@echo 'make adversarial search for the input with the largest error; KEEP=1 keeps a worse one'
+	@echo 'make report   one page of all results: build/report/index.html'
+	@echo 'make test-report  the page in headless Chromium: what it draws, its controls'
+	@echo 'make test-all  make test and make test-report in one'
+	@echo 'make stability  stiff and extreme cases, a row each: error, bound, RTL against model'
+	@echo 'make adversarial  search for the input with the largest error; KEEP=1 keeps a worse one'
 	@echo 'make bench    clocks a second of the simulation, frames a second of the model'
 	@echo 'make synth    synthesis, place and route for an ECP5; build/synth/CONFIG/report.json'
 	@echo '                CONFIG=default  a configuration by name'
+	@echo '                SCENE=torus     only what this scene needs of it (see make prune)'
 	@echo '                GRADE=6         speed grade of the chip, 6 or 8'
 	@echo '                SEEDS=3         how many placements to try; the median counts'
 	@echo '                GATES=1         count gate equivalents in standard cells, too (minutes)'
 	@echo 'make sweep    error against run time and hardware over word widths and methods; build/sweep/'
 	@echo '                AREA=1          synthesize each configuration, too, for its size'
 	@echo '                ROUTE=1         place and route each, too, for its clock: hours'
+	@echo 'make tessellation  error against true surfaces, from coarse to fine meshes; Mach bands,'
+	@echo '                flicker, orientation; part of make sweep, a minute'
 	@echo 'make netlist  whole frames through the netlist in ECP5 cells, against the model'
 	@echo 'make coverage line, branch and toggle coverage of rtl/ by the module and frame tests'
 	@echo 'make activity register toggles a pixel of every bundled scene'
@@ -78,7 +82,14 @@ run: setup
 	  --prune=$(call quote,$(PRUNE))
 
 prune: setup
-	@$(PYTHON) -m scripts.prune --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE))
+	@$(PYTHON) -m scripts.prune --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE)) \
+	  --seeds=$(call quote,$(SEEDS))
+
+.PHONY: prune-random
+SCENES ?= 200
+
+prune-random: setup
+	@PHONG_RANDOM_SCENES=$(call quote,$(SCENES)) $(PYTHON) -m pytest tests/test_pruning.py -k random_scene
 
 test: lint
 	@$(PYTHON) -m pytest
@@ -112,9 +123,14 @@ results: setup
 
 sweep: setup
 	@$(PYTHON) -m scripts.sweep --area=$(call quote,$(AREA)) --route=$(call quote,$(ROUTE))
+	@$(PYTHON) -m scripts.sweep_tessellation
+
+tessellation: setup
+	@$(PYTHON) -m scripts.sweep_tessellation
 
 synth: setup
-	@$(PYTHON) -m scripts.synth --config=$(call quote,$(CONFIG)) --grade=$(call quote,$(GRADE)) \
+	@$(PYTHON) -m scripts.synth --config=$(call quote,$(CONFIG)) \
+	  $(if $(filter-out file,$(origin SCENE)),--scene=$(call quote,$(SCENE))) --grade=$(call quote,$(GRADE)) \
 	  --seeds=$(call quote,$(SEEDS)) --gates=$(call quote,$(GATES))
 
 netlist: setup

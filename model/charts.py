@@ -1,4 +1,4 @@
-"""Charts of the precision sweep: error over time, and error over what it costs in hardware."""
+"""Charts of the sweeps: error over time and over hardware, against true surfaces, artefacts."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 
 import matplotlib
 import matplotlib.ticker
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -91,9 +92,7 @@ def _figure(rows: list[dict], columns: list[tuple[str, Callable]], title: str, p
         handles, labels = grid[0][0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside right upper")
         figure.suptitle(title, fontsize=9)
-        path.parent.mkdir(parents=True, exist_ok=True)
-        figure.savefig(f"{path}.png", dpi=150, metadata={"Software": None})
-        figure.savefig(f"{path}.svg", metadata={"Date": None})
+        _save(figure, path)
 
 
 def time_chart(rows: list[dict], path: Path) -> None:
@@ -126,3 +125,102 @@ def cost_chart(rows: list[dict], path: Path) -> None:
         ("LUT sites: LUT4 + 2 per carry cell + 4 per LUT RAM", lambda row: row["lut"]),
     ]
     _figure(rows, columns, "Error against hardware (ECP5, Yosys)", path)
+
+
+def tessellation_chart(rows: list[dict], path: Path) -> None:
+    """Error against the true surface, a column a shape: of the RTL's codes over cycles a frame,
+    and of the techniques themselves over triangles; `path`.png and .svg."""
+    shapes = list(dict.fromkeys(row["shape"] for row in rows))
+    techniques = list(dict.fromkeys(row["technique"] for row in rows))
+    with matplotlib.rc_context(_STYLE):
+        figure = Figure(figsize=(4 * len(shapes) + 1.5, 8), layout="constrained")
+        grid = figure.subplots(2, len(shapes), squeeze=False, sharey="row")
+        for column, shape in enumerate(shapes):
+            above, below = grid[0][column], grid[1][column]
+            for k, technique in enumerate(techniques):
+                own = [r for r in rows if (r["shape"], r["technique"]) == (shape, technique)]
+                look = dict(marker=_MARKERS[k], color=f"C{k}", linewidth=0.8, label=technique)
+                if all(r["cycles"] for r in own):
+                    above.plot([r["cycles"] for r in own], [r["rms_lsb"] for r in own], **look)
+                triangles = [r["triangles"] for r in own]
+                below.plot(triangles, [r["method_rms_lsb"] for r in own], **look)
+                highlight = [r["highlight_rms_lsb"] for r in own]
+                below.plot(triangles, highlight, **look | {"linestyle": ":", "label": None})
+            above.axhline(PERFECT_RMS, color="gray", linewidth=0.8, linestyle=":")
+            above.set_title(shape)
+            above.set_yscale("log")
+            above.set_xlabel("cycles a frame: a dot takes one, whatever the mesh")
+            above.xaxis.set_major_locator(matplotlib.ticker.MaxNLocator(5))
+            below.loglog()
+            below.set_xlabel("triangles; dotted: in the highlight")
+        grid[0][0].set_ylabel("RMS error of the RTL's codes, LSB (dotted: perfect rounding)")
+        grid[1][0].set_ylabel("RMS error of the technique, LSB")
+        handles, labels = grid[1][0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside right upper")
+        figure.suptitle("Against the true surface, on the dots that mesh and surface cover")
+        _save(figure, path)
+
+
+def _save(figure: Figure, path: Path) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(f"{path}.png", dpi=150, metadata={"Software": None})
+    figure.savefig(f"{path}.svg", metadata={"Date": None})
+
+
+def mach_chart(profiles: dict[str, tuple], path: Path) -> None:
+    """Intensity along a scan line (codes), and its slope, by technique: {name: (x, 255 S)}."""
+    with matplotlib.rc_context(_STYLE):
+        figure = Figure(figsize=(10, 7), layout="constrained")
+        above, below = figure.subplots(2, 1, sharex=True)
+        for k, (name, (x, value)) in enumerate(profiles.items()):
+            look = dict(color="black" if name == "true" else f"C{k}", linewidth=0.9, label=name)
+            above.plot(x, value, **look)
+            below.plot(x[1:] - 0.5, np.diff(value), **look)
+        above.set_ylabel("255 S, green")
+        below.set_ylabel("change from dot to dot, LSB")
+        below.set_ylim(-8, 8)
+        below.set_xlabel("x along the middle scan line")
+        above.legend()
+        figure.suptitle("Mach bands arise where the slope jumps")
+        _save(figure, path)
+
+
+def flicker_chart(films: dict[str, np.ndarray], changes: dict[str, list], path: Path) -> None:
+    """Maps of the largest change of each dot from picture to picture, {title: float64[h, w]}, and
+    RMS change over the pictures, {title: LSB}."""
+    with matplotlib.rc_context(_STYLE | {"axes.grid": False}):
+        figure = Figure(figsize=(2.2 * len(films), 5), layout="constrained")
+        grid = figure.add_gridspec(2, len(films), height_ratios=(3, 2))
+        top = max(float(np.nanmax(film)) for film in films.values())
+        for k, (title, film) in enumerate(films.items()):
+            axes = figure.add_subplot(grid[0, k])
+            shown = axes.imshow(film, cmap="inferno", vmin=0, vmax=min(top, 10))
+            axes.set_title(title)
+            axes.axis("off")
+        figure.colorbar(shown, ax=figure.axes, label="largest change in a degree, LSB", shrink=0.6)
+        axes = figure.add_subplot(grid[1, :])
+        for k, (title, change) in enumerate(changes.items()):
+            axes.plot(range(1, len(change) + 1), change, color=f"C{k}", label=title)
+        axes.set_xlabel("degree")
+        axes.set_ylabel("RMS change, LSB")
+        axes.set_yscale("log")
+        axes.grid(True, alpha=0.3)
+        axes.legend()
+        figure.suptitle("A surface that turns into itself: all change is the mesh's")
+        _save(figure, path)
+
+
+def orientation_chart(pictures: dict[str, np.ndarray], path: Path) -> None:
+    """The square in several orientations: {title: float64[h, w], 0 to 255, NaN outside}."""
+    with matplotlib.rc_context(_STYLE | {"axes.grid": False}):
+        figure = Figure(figsize=(3 * len(pictures) / 2, 6.4), layout="constrained")
+        for axes, (title, picture) in zip(
+            figure.subplots(2, len(pictures) // 2).flat, pictures.items(), strict=True
+        ):
+            axes.set_facecolor("steelblue")
+            axes.imshow(picture, cmap="gray", vmin=0, vmax=255)
+            axes.set_title(title)
+            axes.set_xticks([])
+            axes.set_yticks([])
+        figure.suptitle("One corner black, three white: as one polygon, and as two triangles")
+        _save(figure, path)

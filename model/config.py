@@ -77,6 +77,27 @@ def choice(*names: str):
     return field(default=names[0], metadata={"names": names})
 
 
+def constants(*names: str):
+    """A field that holds a frame's own codes, one for each of `names`, where the hardware may rely
+    on them, or () where it may not.
+
+    In the Verilog header: PHONG_<FIELD>, 0 or 1; PHONG_<FIELD>_<NAME>, the codes, or 0; and
+    PHONG_<FIELD>_LEVELS, the clocks that products with them take (see `digits`).
+    """
+    return field(default=(), metadata={"constants": names})
+
+
+def digits(constant: int) -> int:
+    """How many digits other than 0 `constant` (0 or more) has in canonical signed form, digits
+    -1, 0 and 1, no two side by side: rtl/constant_multiplier.v adds that many words."""
+    return (constant ^ (3 * constant)).bit_count()
+
+
+def levels(constant: int) -> int:
+    """Levels of the tree of additions that multiplies by `constant`, 1 or more."""
+    return max(1, (digits(constant) - 1).bit_length())
+
+
 def _signed(integer: int, fraction: int):
     return field(default=Format(True, integer, fraction))
 
@@ -150,6 +171,19 @@ class Config:
     environment: bool = True  # Cp d: a material with d other than 0
     channels: int = 3  # 1: red, green and blue alike
     two_sided: bool = True  # |Zn| in place of Zn, where a frame asks for it
+    interpolate_x: bool = True  # a span along which the normal's x varies
+    interpolate_y: bool = True
+    interpolate_z: bool = True
+    constant_shift: tuple = constants("by")  # of the block normalization, the same for all normals
+    idle_step_bits: int = 0  # top bits of the steps that repeat the sign
+    idle_material_bits: int = 0  # top bits of material, x and y that are 0
+    idle_x_bits: int = 0
+    idle_y_bits: int = 0
+    constant_half_vector: tuple = constants("x", "z")  # hz 0 or more
+    constant_exponent: tuple = constants("n")  # of all materials
+    constant_weight: tuple = constants("w")
+    constant_ambient: tuple = constants("red", "green", "blue")
+    constant_diffuse: tuple = constants("red", "green", "blue")
 
     # -- other methods for the same job, the first the default (see model/sweep.py) ----------------
     normal_method: str = choice("normalize", "dot_first", "none")  # none: as interpolated

@@ -38,31 +38,37 @@ def writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
     table = frame.materials
     out = []
 
-    def write(name, word, base=0, channel=0, needed=True):
+    def write(name, word, needed, base=0, channel=0):
         if needed:
             out.append((kind | base | (FIELDS[name] + channel), int(word) & word_mask))
 
-    write("half_x", frame.half_vector[0])
-    write("half_z", frame.half_vector[1])
-    write("control", frame.two_sided, needed=config.two_sided or frame.two_sided)
+    hx, hz = frame.half_vector
+    differs = config.specular and (hx, hz) != tuple(config.constant_half_vector)
+    write("half_x", hx, differs)
+    write("half_z", hz, differs)
+    write("control", frame.two_sided, config.two_sided or frame.two_sided)
     for material in np.unique(frame.spans["material"]).tolist():
         base = material << config.weight_index_bits
         ambient, diffuse = table.ambient[material], table.diffuse[material]
         for c in range(3):
             alike = c and ambient[c] == ambient[0] and diffuse[c] == diffuse[0]
-            if config.channels == 3 or not alike:
-                for name, code, there in (
-                    ("ambient", ambient[c], config.environment),
-                    ("diffuse", diffuse[c], config.diffuse),
-                ):
-                    write(name, code, base, c, there or code)
-        n = table.exponent[material]
-        write("exponent", n, base, 0, config.power_function or n != config.exponent.one)
+            there = config.channels == 3 or not alike
+            for name, code, constant, term in (
+                ("ambient", ambient[c], config.constant_ambient, config.environment),
+                ("diffuse", diffuse[c], config.constant_diffuse, config.diffuse),
+            ):
+                known = code == (constant[c] if constant else 0 if not term else -1)
+                write(name, code, there and not known, base, c)
+        n = int(table.exponent[material])
+        known = config.constant_exponent or (
+            () if config.power_function else (config.exponent.one,)
+        )
+        write("exponent", n, config.specular and (n,) != tuple(known), base)
         points = table.weight[material].tolist()
+        known = config.constant_weight or (() if config.specular else (0,))
         for k in range(config.weight_points - 1):
             step = points[k + 1] - points[k]
-            if config.weight_function or k == 0 or step:
+            if config.weight_function or step or (k == 0 and (points[0],) != tuple(known)):
                 word = (step << config.coefficient.bits | points[k]) & word_mask
-                if config.specular or word:
-                    out.append((base | k, word))
+                out.append((base | k, word))
     return out

@@ -134,13 +134,12 @@ class Patch:
 
     def at(self, u: np.ndarray, v: np.ndarray):
         """Points, dS/du and dS/dv at parameters `u`, `v` (float64[n]), float64[n, 3] each."""
-        out = []
-        for basis in (
-            (bernstein, bernstein), (bernstein_slope, bernstein), (bernstein, bernstein_slope)
-        ):  # fmt: skip
-            along = np.einsum("ni,ijc->njc", basis[0](u), self.control)
-            out.append(np.einsum("nj,njc->nc", basis[1](v), along))
-        return out
+        in_u, in_v = (bernstein(u), bernstein_slope(u)), (bernstein(v), bernstein_slope(v))
+        return [
+            (in_u[i][:, :, None] * in_v[j][:, None, :]).reshape(-1, 16)
+            @ self.control.reshape(16, 3)
+            for i, j in ((0, 0), (1, 0), (0, 1))
+        ]
 
     def see(self, origin, back):
         """See `Surface`: Newton's method from the nearest of a grid of points of the patch.
@@ -167,7 +166,7 @@ class Patch:
             away = np.sum(known * known, axis=1) - 2 * want[block] @ known.T
             nearest[block] = np.argmin(away, axis=1)
         u, v = u0[nearest], v0[nearest]
-        for _ in range(12):
+        for _ in range(8):
             point, du, dv = self.at(u, v)
             miss, a, b = want - point @ screen.T, du @ screen.T, dv @ screen.T
             det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]

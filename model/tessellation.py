@@ -200,6 +200,13 @@ def errors(picture: Picture, name: str, size=SIZE, material=MATERIAL, where: str
     }
 
 
+def distance(a: Picture, b: Picture) -> float:
+    """RMS difference of two pictures of one mesh, in LSB."""
+    first, second = np.argsort(a.dot), np.argsort(b.dot)
+    assert np.array_equal(a.dot[first], b.dot[second])
+    return float(np.sqrt(np.mean((a.value[first] - b.value[second]) ** 2)))
+
+
 def order(levels, values, last: int = 4) -> float:
     """The order of convergence: minus the slope of log `values` over log `levels`, least squares
     over the `last` of them."""

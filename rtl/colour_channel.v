@@ -19,6 +19,10 @@ module colour_channel #(
     parameter SPECULAR             = `PHONG_SPECULAR,
     parameter DIFFUSE              = `PHONG_DIFFUSE,
     parameter ENVIRONMENT          = `PHONG_ENVIRONMENT,
+    parameter CONSTANT_AMBIENT     = `PHONG_CONSTANT_AMBIENT,  // 1: Cp d is AMBIENT
+    parameter AMBIENT              = `PHONG_CONSTANT_AMBIENT_RED,
+    parameter CONSTANT_DIFFUSE     = `PHONG_CONSTANT_DIFFUSE,  // 1: Cp (1 - d) is DIFFUSION
+    parameter DIFFUSION            = `PHONG_CONSTANT_DIFFUSE_RED,
     parameter LATENCY              = `PHONG_COLOUR_CHANNEL_LATENCY
 ) (
     input  wire                        clk,
@@ -30,7 +34,7 @@ module colour_channel #(
     input  wire [     COSINE_BITS-1:0] cosine,          // u0.18, Zn
     input  wire                        lit,             // 0: ambient only
     input  wire [   SPECULAR_BITS-1:0] specular,        // u1.35, W(i) cos(s)^n,
-                                                        // PHONG_MULTIPLIER_LATENCY later
+                                                        // PHONG_PRODUCTS_LATENCY later
     output wire [     COLOUR_BITS-1:0] colour           // code
 );
 
@@ -38,7 +42,7 @@ module colour_channel #(
   localparam DIFFUSE_SHIFT = SPECULAR_FRACTION - COEFFICIENT_FRACTION - COSINE_FRACTION;
   localparam AMBIENT_SHIFT = SPECULAR_FRACTION - COEFFICIENT_FRACTION;
   localparam SUM_BITS = SPECULAR_FRACTION + 2;  // Cp + W is at most 2
-  localparam WAIT = `PHONG_MULTIPLIER_LATENCY;
+  localparam WAIT = `PHONG_PRODUCTS_LATENCY;
 
   // ---- intensity: products ----
   wire [COEFFICIENT_BITS-1:0] ambient_p2;
@@ -46,8 +50,21 @@ module colour_channel #(
   wire lit_p2;
 
   generate
-    if (DIFFUSE) begin : gen_diffuse
+    if (DIFFUSE && CONSTANT_DIFFUSE) begin : gen_constant_diffuse
+      constant_multiplier #(
+          .BITS(COSINE_BITS),
+          .IS_SIGNED(0),
+          .CONSTANT(DIFFUSION),
+          .CONSTANT_BITS(COEFFICIENT_BITS),
+          .LATENCY(WAIT)
+      ) u_diffuse (
+          .clk(clk),
+          .word(cosine & {COSINE_BITS{lit}}),
+          .product(diffuse_p2)
+      );
+    end else if (DIFFUSE) begin : gen_diffuse
       wire [COEFFICIENT_BITS-1:0] diffuse;
+      wire [DIFFUSE_BITS-1:0] product;
 
       small_ram #(
           .ADDRESS_BITS(MATERIAL_BITS),
@@ -70,13 +87,26 @@ module colour_channel #(
           .clk(clk),
           .a(diffuse),
           .b(cosine & {COSINE_BITS{lit}}),
-          .product(diffuse_p2)
+          .product(product)
+      );
+
+      delay #(
+          .BITS  (DIFFUSE_BITS),
+          .CYCLES(WAIT - `PHONG_MULTIPLIER_LATENCY)
+      ) u_wait (
+          .clk(clk),
+          .in (product),
+          .out(diffuse_p2)
       );
     end else begin : gen_no_diffuse
       assign diffuse_p2 = {DIFFUSE_BITS{1'b0}};
     end
 
-    if (ENVIRONMENT) begin : gen_environment
+    if (ENVIRONMENT && CONSTANT_AMBIENT) begin : gen_constant_ambient
+      localparam [COEFFICIENT_BITS-1:0] CODE = AMBIENT;
+
+      assign ambient_p2 = CODE;
+    end else if (ENVIRONMENT) begin : gen_environment
       wire [COEFFICIENT_BITS-1:0] ambient;
 
       small_ram #(

@@ -54,9 +54,8 @@
     `PHONG_INVERSE_SQRT_ITERATED_LATENCY )
 
 `define PHONG_ALIGN_LATENCY \
-  ( 1                                /* significant bits of three components */ \
-  + `PHONG_LEADING_ZEROS_LATENCY \
-  + `PHONG_LEFT_SHIFTER_LATENCY \
+  ( (`PHONG_CONSTANT_SHIFT ? 0 : 1 + `PHONG_LEADING_ZEROS_LATENCY + `PHONG_LEFT_SHIFTER_LATENCY) \
+                                     /* significant bits of three components; shift */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
 // From a normal to zero_normal.
@@ -84,9 +83,20 @@
   ( `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_NONE ? `PHONG_UNNORMALIZED_LATENCY : \
     `PHONG_NORMALIZER_LATENCY )
 
+<<<<<<< HEAD
 `define PHONG_ACROSS_LATENCY \
   ( `PHONG_MULTIPLIER_LATENCY        /* products with h */ \
   + 2                                /* fetch, subtract */ \
+=======
+`define PHONG_REFLECTION_LATENCY \
+  ( (`PHONG_CONSTANT_HALF_VECTOR ? `PHONG_CONSTANT_HALF_VECTOR_LEVELS \
+                                 : `PHONG_MULTIPLIER_LATENCY + 1) \
+                                     /* across: products with h, fetch */ \
+  + 1                                /* across: subtract */ \
+  + `PHONG_ROUND_SATURATE_LATENCY \
+  + `PHONG_MULTIPLIER_LATENCY        /* versine: squares */ \
+  + 2                                /* versine: fetch, sum */ \
+>>>>>>> main
   + `PHONG_ROUND_SATURATE_LATENCY )
 
 `define PHONG_VERSINE_OF_PARTS_LATENCY \
@@ -114,9 +124,12 @@
   ( 1                                /* 1 - versine */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
+`define PHONG_TIMES_EXPONENT_LATENCY \
+  ( `PHONG_CONSTANT_EXPONENT ? `PHONG_CONSTANT_EXPONENT_LEVELS : `PHONG_MULTIPLIER_LATENCY )
+
 `define PHONG_SPECULAR_POWER_LATENCY \
   ( `PHONG_LOG_LATENCY \
-  + `PHONG_MULTIPLIER_LATENCY        /* times exponent */ \
+  + `PHONG_TIMES_EXPONENT_LATENCY \
   + 3                                /* times exponent: shift twice, saturate */ \
   + `PHONG_ROM_LATENCY               /* exp lookup */ \
   + `PHONG_NARROW_MULTIPLIER_LATENCY /* exp refine: slope * offset */ \
@@ -166,8 +179,20 @@
   + 1                                /* interpolate: add */ \
   + 1 )                              /* interpolate: round */
 
+`define PHONG_WEIGHT_PRODUCT_LATENCY \
+  ( `PHONG_CONSTANT_WEIGHT ? `PHONG_CONSTANT_WEIGHT_LEVELS : `PHONG_MULTIPLIER_LATENCY )
+
+`define PHONG_DIFFUSE_PRODUCT_LATENCY \
+  ( `PHONG_CONSTANT_DIFFUSE ? `PHONG_CONSTANT_DIFFUSE_LEVELS : `PHONG_MULTIPLIER_LATENCY )
+
+// Of the slower of both, if there are two.
+`define PHONG_PRODUCTS_LATENCY \
+  ( `PHONG_SPECULAR \
+    & (!`PHONG_DIFFUSE | (`PHONG_WEIGHT_PRODUCT_LATENCY > `PHONG_DIFFUSE_PRODUCT_LATENCY)) \
+    ? `PHONG_WEIGHT_PRODUCT_LATENCY : `PHONG_DIFFUSE_PRODUCT_LATENCY )
+
 `define PHONG_COLOUR_CHANNEL_LATENCY \
-  ( `PHONG_MULTIPLIER_LATENCY        /* intensity: products */ \
+  ( `PHONG_PRODUCTS_LATENCY          /* intensity: products */ \
   + (`PHONG_ENVIRONMENT & `PHONG_DIFFUSE & `PHONG_SPECULAR ? 2 : 1) \
                                      /* intensity: ambient + diffuse, + specular */ \
   + 1                                /* intensity: clamp, cut */ \

@@ -22,6 +22,8 @@ module normalizer #(
     parameter UNIT_FRACTION     = `PHONG_UNIT_FRACTION,
     parameter COSINE_BITS       = `PHONG_COSINE_BITS,
     parameter COSINE_FRACTION   = `PHONG_COSINE_FRACTION,
+    parameter CONSTANT_SHIFT    = `PHONG_CONSTANT_SHIFT,  // 1: all normals are shifted by SHIFT
+    parameter SHIFT             = `PHONG_CONSTANT_SHIFT_BY,
     parameter SPECULAR          = `PHONG_SPECULAR,   // 0: nobody asks for the unit normal itself
     parameter TWO_SIDED         = `PHONG_TWO_SIDED,  // 0: where Zn < 0, cosine is of no use
     parameter LATENCY           = `PHONG_NORMALIZER_LATENCY
@@ -40,7 +42,7 @@ module normalizer #(
     output wire [  UNIT_BITS-1:0] unit_z,
     output wire [COSINE_BITS-1:0] cosine,     // u0.18, |Zn| = cos(i)
     output wire                   lit,        // Zn > 0 (two-sided: Zn not 0), exact
-    output reg                    zero_normal // for one clock, early: the zero vector
+    output wire                   zero_normal // for one clock, early: the zero vector
 );
 
   localparam SHIFT_BITS   = $clog2(NORMAL_BITS);
@@ -65,48 +67,58 @@ module normalizer #(
   );
 
   // ---- leading_zeros: of the largest component ----
-  localparam SHIFT_LATENCY = 1 + `PHONG_LEADING_ZEROS_LATENCY;
+  localparam SHIFT_LATENCY = CONSTANT_SHIFT ? 0 : 1 + `PHONG_LEADING_ZEROS_LATENCY;
 
-  reg [NORMAL_BITS-2:0] ones_p1;
   wire [SHIFT_BITS-1:0] shift_p3;
 
-  always @(posedge clk) begin
-    ones_p1 <= (x[NORMAL_BITS-2:0] ^ {NORMAL_BITS - 1{x[NORMAL_BITS-1]}})
-             | (y[NORMAL_BITS-2:0] ^ {NORMAL_BITS - 1{y[NORMAL_BITS-1]}})
-             | (z[NORMAL_BITS-2:0] ^ {NORMAL_BITS - 1{z[NORMAL_BITS-1]}});
-  end
+  generate
+    if (CONSTANT_SHIFT) begin : gen_constant_shift
+      assign shift_p3 = SHIFT;
+      assign zero_normal = 1'b0;  // that of another size is found by span_guard
+    end else begin : gen_shift
+      reg [NORMAL_BITS-2:0] ones_p1;
 
-  leading_zeros #(
-      .BITS(NORMAL_BITS - 1),
-      .COUNT_BITS(SHIFT_BITS)
-  ) u_leading_zeros (
-      .clk  (clk),
-      .word (ones_p1),
-      .count(shift_p3)
-  );
+      always @(posedge clk) begin
+        ones_p1 <= (x[NORMAL_BITS-2:0] ^ {NORMAL_BITS - 1{x[NORMAL_BITS-1]}})
+                 | (y[NORMAL_BITS-2:0] ^ {NORMAL_BITS - 1{y[NORMAL_BITS-1]}})
+                 | (z[NORMAL_BITS-2:0] ^ {NORMAL_BITS - 1{z[NORMAL_BITS-1]}});
+      end
 
-  // ---- zero: no bit below the signs, and none of the signs ----
-  localparam [SHIFT_BITS-1:0] NO_BIT = NORMAL_BITS[SHIFT_BITS-1:0] - 1'b1;
+      leading_zeros #(
+          .BITS(NORMAL_BITS - 1),
+          .COUNT_BITS(SHIFT_BITS)
+      ) u_leading_zeros (
+          .clk  (clk),
+          .word (ones_p1),
+          .count(shift_p3)
+      );
 
-  reg sign_p1;
-  wire sign_p3;
-  reg [SHIFT_LATENCY-1:0] in_flight;
+      // The zero vector: no bit below the signs, and none of the signs.
+      localparam [SHIFT_BITS-1:0] NO_BIT = NORMAL_BITS[SHIFT_BITS-1:0] - 1'b1;
 
-  always @(posedge clk) begin
-    sign_p1 <= x[NORMAL_BITS-1] | y[NORMAL_BITS-1] | z[NORMAL_BITS-1];
-    zero_normal <= ~reset & in_flight[SHIFT_LATENCY-1] & ~sign_p3 & (shift_p3 == NO_BIT);
-    if (reset) in_flight <= {SHIFT_LATENCY{1'b0}};
-    else in_flight <= {in_flight[SHIFT_LATENCY-2:0], valid};
-  end
+      reg sign_p1, zero;
+      wire sign_p3;
+      reg [SHIFT_LATENCY-1:0] in_flight;
 
-  delay #(
-      .BITS  (1),
-      .CYCLES(SHIFT_LATENCY - 1)
-  ) u_sign (
-      .clk(clk),
-      .in (sign_p1),
-      .out(sign_p3)
-  );
+      always @(posedge clk) begin
+        sign_p1 <= x[NORMAL_BITS-1] | y[NORMAL_BITS-1] | z[NORMAL_BITS-1];
+        zero <= ~reset & in_flight[SHIFT_LATENCY-1] & ~sign_p3 & (shift_p3 == NO_BIT);
+        if (reset) in_flight <= {SHIFT_LATENCY{1'b0}};
+        else in_flight <= {in_flight[SHIFT_LATENCY-2:0], valid};
+      end
+
+      delay #(
+          .BITS  (1),
+          .CYCLES(SHIFT_LATENCY - 1)
+      ) u_sign (
+          .clk(clk),
+          .in (sign_p1),
+          .out(sign_p3)
+      );
+
+      assign zero_normal = zero;
+    end
+  endgenerate
 
   // ---- what is scaled: the components, or the parts across h and z ----
   // |m| may be up to sqrt(3), so those parts have one fraction bit less.
@@ -195,15 +207,19 @@ module normalizer #(
           .out(normal_p3)
       );
 
-      left_shifter #(
-          .BITS(NORMAL_BITS),
-          .COUNT_BITS(SHIFT_BITS)
-      ) u_align (
-          .clk(clk),
-          .word(normal_p3),
-          .count(shift_p3),
-          .shifted(aligned_p5)
-      );
+      if (CONSTANT_SHIFT) begin : gen_constant_align
+        assign aligned_p5 = normal_p3 << SHIFT;
+      end else begin : gen_align
+        left_shifter #(
+            .BITS(NORMAL_BITS),
+            .COUNT_BITS(SHIFT_BITS)
+        ) u_align (
+            .clk(clk),
+            .word(normal_p3),
+            .count(shift_p3),
+            .shifted(aligned_p5)
+        );
+      end
 
       round_saturate #(
           .IN_BITS (NORMAL_BITS),

@@ -1,26 +1,21 @@
 // phong_pipeline: spans in, shaded pixels out, one pixel a clock (Bui Tuong Phong, 1975).
-// Three interpolators in parallel, a normalizer, the shading function; a FIFO at the end takes
-// back-pressure. Latency from an accepted span to its first pixel: PHONG_PIXEL_LATENCY + 3.
-// Or, in place of what is between the walker and the FIFO, the paper's older techniques: Gouraud's
-// interpolated intensities, or one intensity a face. Wiring in data order.
+// Spans become pixels; a unit for the technique gives them colours: Phong's own, or the paper's older
+// ones, Gouraud's interpolated intensities or one intensity a face; a FIFO takes back-pressure.
+// Latency from an accepted span to its first pixel: PHONG_PIXEL_LATENCY + 3. Wiring in data order.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
 
 module phong_pipeline #(
-    parameter TECHNIQUE        = `PHONG_TECHNIQUE,
-    parameter NORMAL_METHOD    = `PHONG_NORMAL_METHOD,
-    parameter NORMAL_BITS      = `PHONG_NORMAL_BITS,
-    parameter COORDINATE_BITS  = `PHONG_COORDINATE_BITS,
-    parameter MATERIAL_BITS    = `PHONG_MATERIAL_BITS,
-    parameter COLOUR_BITS      = `PHONG_COLOUR_BITS,
-    parameter COEFFICIENT_BITS = `PHONG_COEFFICIENT_BITS,
-    parameter INDEX_BITS       = `PHONG_WEIGHT_INDEX_BITS,
-    parameter HALF_BITS        = `PHONG_HALF_VECTOR_BITS,
-    parameter UNIT_BITS        = `PHONG_UNIT_BITS,
-    parameter COSINE_BITS      = `PHONG_COSINE_BITS,
-    parameter SPAN_BITS        = `PHONG_SPAN_BITS,
-    parameter PIXEL_BITS       = 2 * COORDINATE_BITS + 3 * COLOUR_BITS
+    parameter TECHNIQUE          = `PHONG_TECHNIQUE,
+    parameter COORDINATE_BITS    = `PHONG_COORDINATE_BITS,
+    parameter MATERIAL_BITS      = `PHONG_MATERIAL_BITS,
+    parameter COLOUR_BITS        = `PHONG_COLOUR_BITS,
+    parameter COEFFICIENT_BITS   = `PHONG_COEFFICIENT_BITS,
+    parameter INDEX_BITS         = `PHONG_WEIGHT_INDEX_BITS,
+    parameter SPAN_BITS          = `PHONG_SPAN_BITS,
+    parameter IDLE_MATERIAL_BITS = `PHONG_IDLE_MATERIAL_BITS,
+    parameter PIXEL_BITS         = 2 * COORDINATE_BITS + 3 * COLOUR_BITS
 ) (
     input wire clk,
     input wire reset,  // synchronous; registers and material table keep their contents
@@ -72,7 +67,7 @@ module phong_pipeline #(
       .span_x(span_x),
       .span_y(span_y),
       .span_length(span_length),
-      .span_material(span_material),
+      .span_material(span_material & ({MATERIAL_BITS{1'b1}} >> IDLE_MATERIAL_BITS)),
       .span_last(s_axis_tlast),
       .load(load),
       .advance(advance),
@@ -91,44 +86,19 @@ module phong_pipeline #(
 
   generate
     if (TECHNIQUE == `PHONG_TECHNIQUE_PHONG) begin : gen_phong
-      // ---- registers ----
-      wire [HALF_BITS-1:0] half_x, half_z;
-      wire two_sided;
-      wire write_weight, write_exponent;
-      wire [2:0] write_ambient, write_diffuse;
-      wire [MATERIAL_BITS+INDEX_BITS-1:0] table_address;
-      wire [2*COEFFICIENT_BITS:0] table_word;
-
-      register_map u_register_map (
+      phong_unit u_phong_unit (
           .clk(clk),
+          .reset(reset),
           .write_enable(write_enable),
           .write_address(write_address),
           .write_word(write_word),
-          .half_x(half_x),
-          .half_z(half_z),
-          .two_sided(two_sided),
-          .write_weight(write_weight),
-          .write_exponent(write_exponent),
-          .write_ambient(write_ambient),
-          .write_diffuse(write_diffuse),
-          .table_address(table_address),
-          .table_word(table_word),
-          .unsupported(unsupported)
-      );
-
-      // ---- three interpolators in parallel ----
-      wire [NORMAL_BITS-1:0] start_x, start_y, start_z;
-      wire [NORMAL_BITS-1:0] step_x, step_y, step_z;
-      wire [NORMAL_BITS-1:0] normal_x, normal_y, normal_z;
-      wire overflow_x, overflow_y, overflow_z;
-
-      assign {step_z, step_y, step_x, start_z, start_y, start_x} = span_values;
-      assign overflow = overflow_x | overflow_y | overflow_z;
-
-      normal_interpolator u_interpolator_x (
-          .clk(clk),
+          .taken(s_axis_tvalid & s_axis_tready),
+          .values(span_values),
+          .length(span_length),
+          .material(span_material),
           .load(load),
           .advance(advance),
+<<<<<<< HEAD
           .start(start_x),
           .step(step_x),
           .value(normal_x),
@@ -221,9 +191,18 @@ module phong_pipeline #(
           .cosine(cosine),
           .lit(lit),
           .material(material),
+=======
+          .pixel_valid(pixel_valid),
+          .pixel_x(pixel_x),
+          .pixel_y(pixel_y),
+          .pixel_material(pixel_material),
+>>>>>>> main
           .red(red),
           .green(green),
-          .blue(blue)
+          .blue(blue),
+          .overflow(overflow),
+          .zero_normal(zero_normal),
+          .unsupported(unsupported)
       );
     end else if (TECHNIQUE == `PHONG_TECHNIQUE_GOURAUD) begin : gen_gouraud
       assign zero_normal = 1'b0;  // there are no normals

@@ -10,6 +10,8 @@ module pixel_fifo #(
     parameter COORDINATE_BITS = `PHONG_COORDINATE_BITS,
     parameter COLOUR_BITS     = `PHONG_COLOUR_BITS,
     parameter CHANNELS        = `PHONG_CHANNELS,
+    parameter IDLE_X_BITS     = `PHONG_IDLE_X_BITS,  // top bits that are always 0
+    parameter IDLE_Y_BITS     = `PHONG_IDLE_Y_BITS,
     parameter LATENCY         = `PHONG_PIXEL_LATENCY
 ) (
     input wire clk,
@@ -92,7 +94,9 @@ module pixel_fifo #(
 
   // ---- banks of slots, in logic cells: block RAM would be nearly empty ----
   // Each reads into a register of its own; choosing between them comes after the registers.
-  localparam PLACE_BITS = 1 + 2 * COORDINATE_BITS;
+  localparam X_BITS = COORDINATE_BITS - IDLE_X_BITS;
+  localparam Y_BITS = COORDINATE_BITS - IDLE_Y_BITS;
+  localparam PLACE_BITS = 1 + Y_BITS + X_BITS;
   localparam PIXEL_BITS = PLACE_BITS + CHANNELS * COLOUR_BITS;
 
   wire [3*COLOUR_BITS-1:0] rgb = {red, green, blue};  // one channel: all of them blue
@@ -100,10 +104,12 @@ module pixel_fifo #(
   wire [PIXEL_BITS-1:0] chosen[0:BANKS];
 
   assign chosen[0] = {PIXEL_BITS{1'b0}};
-  assign {out_last, out_data} = {
-    chosen[BANKS][PIXEL_BITS-1-:PLACE_BITS],
-    {3 / CHANNELS{chosen[BANKS][CHANNELS*COLOUR_BITS-1:0]}}
-  };
+  assign out_last = chosen[BANKS][PIXEL_BITS-1];
+  assign out_data[2*COORDINATE_BITS+3*COLOUR_BITS-1-:COORDINATE_BITS] =
+      {{IDLE_Y_BITS{1'b0}}, chosen[BANKS][PIXEL_BITS-2-:Y_BITS]};
+  assign out_data[COORDINATE_BITS+3*COLOUR_BITS-1-:COORDINATE_BITS] =
+      {{IDLE_X_BITS{1'b0}}, chosen[BANKS][CHANNELS*COLOUR_BITS+:X_BITS]};
+  assign out_data[3*COLOUR_BITS-1:0] = {3 / CHANNELS{chosen[BANKS][CHANNELS*COLOUR_BITS-1:0]}};
 
   genvar b;
   generate
@@ -119,7 +125,7 @@ module pixel_fifo #(
 
       always @(posedge clk) begin
         if (pixel_valid & (place_slot[SLOT_BITS-1:4] == FIRST[SLOT_BITS-1:4])) begin
-          places[place_slot[3:0]] <= {pixel_last, pixel_y, pixel_x};
+          places[place_slot[3:0]] <= {pixel_last, pixel_y[Y_BITS-1:0], pixel_x[X_BITS-1:0]};
         end
         if (colour_valid & (colour_slot[SLOT_BITS-1:4] == FIRST[SLOT_BITS-1:4])) begin
           colours[colour_slot[3:0]] <= rgb[CHANNELS*COLOUR_BITS-1:0];

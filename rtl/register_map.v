@@ -20,7 +20,14 @@ module register_map #(
     parameter DIFFUSE          = `PHONG_DIFFUSE,
     parameter ENVIRONMENT      = `PHONG_ENVIRONMENT,
     parameter CHANNELS         = `PHONG_CHANNELS,
-    parameter TWO_SIDED        = `PHONG_TWO_SIDED
+    parameter TWO_SIDED        = `PHONG_TWO_SIDED,
+    parameter CONSTANT_HALF_VECTOR = `PHONG_CONSTANT_HALF_VECTOR,
+    parameter CONSTANT_X           = `PHONG_CONSTANT_HALF_VECTOR_X,
+    parameter CONSTANT_Z           = `PHONG_CONSTANT_HALF_VECTOR_Z,
+    parameter CONSTANT_EXPONENT    = `PHONG_CONSTANT_EXPONENT,
+    parameter CONSTANT_WEIGHT      = `PHONG_CONSTANT_WEIGHT,
+    parameter CONSTANT_AMBIENT     = `PHONG_CONSTANT_AMBIENT,
+    parameter CONSTANT_DIFFUSE     = `PHONG_CONSTANT_DIFFUSE
 ) (
     input wire clk,
 
@@ -31,9 +38,9 @@ module register_map #(
     input wire [      2*COEFFICIENT_BITS:0] write_word,
 
     // registers
-    output reg [HALF_BITS-1:0] half_x,  // s0.17
-    output reg [HALF_BITS-1:0] half_z,
-    output wire                two_sided,
+    output wire [HALF_BITS-1:0] half_x,  // s0.17
+    output wire [HALF_BITS-1:0] half_z,
+    output wire                 two_sided,
 
     // material table
     output reg                                write_weight,
@@ -60,12 +67,10 @@ module register_map #(
 
   integer c;
   always @(posedge clk) begin
-    write_half_x <= write_field & (field == HALF_X);
-    write_half_z <= write_field & (field == HALF_Z);
-    if (write_half_x) half_x <= table_word[HALF_BITS-1:0];
-    if (write_half_z) half_z <= table_word[HALF_BITS-1:0];
     write_weight <= write_enable & is_weight;
     write_exponent <= write_field & (field == EXPONENT);
+    write_half_x <= write_field & (field == HALF_X);
+    write_half_z <= write_field & (field == HALF_Z);
     write_control <= write_field & (field == CONTROL);
     for (c = 0; c < 3; c = c + 1) begin
       write_ambient[c] <= write_field & (field == AMBIENT_RED + c[INDEX_BITS-1:0]);
@@ -75,8 +80,23 @@ module register_map #(
     table_word <= write_word;
   end
 
-  // ---- features ----
+  // ---- registers ----
   generate
+    if (CONSTANT_HALF_VECTOR) begin : gen_constant_half_vector
+      assign half_x = CONSTANT_X;
+      assign half_z = CONSTANT_Z;
+    end else begin : gen_half_vector
+      reg [HALF_BITS-1:0] x, z;
+
+      always @(posedge clk) begin
+        if (write_half_x) x <= table_word[HALF_BITS-1:0];
+        if (write_half_z) z <= table_word[HALF_BITS-1:0];
+      end
+
+      assign half_x = x;
+      assign half_z = z;
+    end
+
     if (TWO_SIDED) begin : gen_two_sided
       reg turn;
       always @(posedge clk) if (write_control) turn <= table_word[0];
@@ -87,29 +107,44 @@ module register_map #(
   endgenerate
 
   // ---- words that ask for what is left out ----
-  // 2^-n is 0 in the word of cos(s)^n from this n on.
+  // From this n on 2^-n is 0 in the word of cos(s)^n.
   localparam [EXPONENT_BITS-1:0] ONE = 1 << EXPONENT_FRACTION;
   localparam [EXPONENT_BITS-1:0] VANISHES = (POWER_BITS + 1) << EXPONENT_FRACTION;
 
-  wire other = table_word[COEFFICIENT_BITS-1:0] != 0;
+  wire [COEFFICIENT_BITS-1:0] code = table_word[COEFFICIENT_BITS-1:0];
+  wire [COEFFICIENT_BITS:0] step = table_word[2*COEFFICIENT_BITS:COEFFICIENT_BITS];
   wire [EXPONENT_BITS-1:0] n = table_word[EXPONENT_BITS-1:0];
-  wire [4:0] missing;
+  wire write_n = write_exponent & (SPECULAR != 0);  // else no exponent is of use
+  wire [9:0] missing;
 
   assign missing[0] = (SPECULAR == 0) & write_weight & (table_word != 0);
-  assign missing[1] = (WEIGHT_FUNCTION == 0) & write_weight
-      & (table_word[2*COEFFICIENT_BITS:COEFFICIENT_BITS] != 0);
-  assign missing[2] = (SPECULAR != 0) & write_exponent
-      & ((POWER_FUNCTION == 0) & (n != ONE)
-         | (POWER_FUNCTION != 0) & (POWER_BYPASS == 0) & (n == ONE)
-         | (LOG_OCTAVES == 0) & (n != ONE) & (n < VANISHES));
-  assign missing[3] = (ENVIRONMENT == 0) & |write_ambient & other
-      | (DIFFUSE == 0) & |write_diffuse & other
-      | (CHANNELS < 3) & |{write_ambient[2:1], write_diffuse[2:1]};
-  assign missing[4] = (TWO_SIDED == 0) & write_control & table_word[0];
+  assign missing[1] = (WEIGHT_FUNCTION == 0) & write_weight & (step != 0);
+  assign missing[2] = (POWER_FUNCTION == 0) & write_n & (n != ONE);
+  assign missing[3] = (POWER_FUNCTION != 0) & (POWER_BYPASS == 0) & write_n & (n == ONE);
+  assign missing[4] = (LOG_OCTAVES == 0) & write_n & (n != ONE) & (n < VANISHES);
+  assign missing[5] = (DIFFUSE == 0) & |write_diffuse & (code != 0)
+      | (ENVIRONMENT == 0) & |write_ambient & (code != 0);
+  assign missing[6] = (CHANNELS < 3) & |{write_ambient[2:1], write_diffuse[2:1]};
+  assign missing[7] = (TWO_SIDED == 0) & write_control & table_word[0];
+  assign missing[8] = (CONSTANT_HALF_VECTOR != 0)
+      & (write_half_x & (table_word[HALF_BITS-1:0] != half_x)
+         | write_half_z & (table_word[HALF_BITS-1:0] != half_z));
+  assign missing[9] = (CONSTANT_EXPONENT != 0) & write_n & (n != `PHONG_CONSTANT_EXPONENT_N)
+      | (CONSTANT_WEIGHT != 0) & write_weight & (code != `PHONG_CONSTANT_WEIGHT_W)
+      | (CONSTANT_AMBIENT != 0)
+        & (write_ambient[0] & (code != `PHONG_CONSTANT_AMBIENT_RED)
+           | write_ambient[1] & (code != `PHONG_CONSTANT_AMBIENT_GREEN)
+           | write_ambient[2] & (code != `PHONG_CONSTANT_AMBIENT_BLUE))
+      | (CONSTANT_DIFFUSE != 0)
+        & (write_diffuse[0] & (code != `PHONG_CONSTANT_DIFFUSE_RED)
+           | write_diffuse[1] & (code != `PHONG_CONSTANT_DIFFUSE_GREEN)
+           | write_diffuse[2] & (code != `PHONG_CONSTANT_DIFFUSE_BLUE));
 
   generate
     if (SPECULAR && POWER_FUNCTION && POWER_BYPASS && LOG_OCTAVES && WEIGHT_FUNCTION && DIFFUSE
-        && ENVIRONMENT && CHANNELS == 3 && TWO_SIDED) begin : gen_everything
+        && ENVIRONMENT && CHANNELS == 3 && TWO_SIDED && !CONSTANT_HALF_VECTOR
+        && !CONSTANT_EXPONENT && !CONSTANT_WEIGHT && !CONSTANT_AMBIENT
+        && !CONSTANT_DIFFUSE) begin : gen_everything
       assign unsupported = 1'b0;
       wire unused = &{1'b0, missing};
     end else begin : gen_check

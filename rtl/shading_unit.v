@@ -25,6 +25,8 @@ module shading_unit #(
     parameter SPECULAR         = `PHONG_SPECULAR,
     parameter POWER_FUNCTION   = `PHONG_POWER_FUNCTION,
     parameter WEIGHT_FUNCTION  = `PHONG_WEIGHT_FUNCTION,
+    parameter CONSTANT_EXPONENT = `PHONG_CONSTANT_EXPONENT,
+    parameter CONSTANT_WEIGHT  = `PHONG_CONSTANT_WEIGHT,
     parameter LATENCY          = `PHONG_SHADING_UNIT_LATENCY
 ) (
     input wire clk,
@@ -162,17 +164,21 @@ module shading_unit #(
       if (POWER_FUNCTION) begin : gen_power
         wire [EXPONENT_BITS-1:0] exponent;
 
-        small_ram #(
-            .ADDRESS_BITS(MATERIAL_BITS),
-            .WORD_BITS(EXPONENT_BITS)
-        ) u_exponent_table (
-            .clk(clk),
-            .write_enable(write_exponent),
-            .write_address(write_material),
-            .write_word(write_word[EXPONENT_BITS-1:0]),
-            .address(material_exponent),
-            .word(exponent)
-        );
+        if (CONSTANT_EXPONENT) begin : gen_constant_exponent
+          assign exponent = `PHONG_CONSTANT_EXPONENT_N;
+        end else begin : gen_exponent
+          small_ram #(
+              .ADDRESS_BITS(MATERIAL_BITS),
+              .WORD_BITS(EXPONENT_BITS)
+          ) u_exponent_table (
+              .clk(clk),
+              .write_enable(write_exponent),
+              .write_address(write_material),
+              .write_word(write_word[EXPONENT_BITS-1:0]),
+              .address(material_exponent),
+              .word(exponent)
+          );
+        end
 
         specular_power_method u_specular_power (
             .clk(clk),
@@ -198,7 +204,9 @@ module shading_unit #(
             .cosine(cosine_weight),
             .weight(weight)
         );
-      end else begin : gen_constant_weight  // interval 0 stands for all
+      end else if (CONSTANT_WEIGHT) begin : gen_constant_weight
+        assign weight = {WEIGHT_BITS{1'b0}};
+      end else begin : gen_material_weight  // interval 0 stands for all
         wire [COEFFICIENT_BITS-1:0] left;
 
         small_ram #(
@@ -216,17 +224,42 @@ module shading_unit #(
         assign weight = {left, {WEIGHT_FRACTION - COEFFICIENT_FRACTION{1'b0}}};
       end
 
-      multiplier #(
-          .A_BITS  (WEIGHT_BITS),
-          .B_BITS  (POWER_BITS),
-          .A_SIGNED(0),
-          .B_SIGNED(0)
-      ) u_specular (
-          .clk(clk),
-          .a(weight),
-          .b(power),
-          .product(specular)
-      );
+      if (CONSTANT_WEIGHT) begin : gen_constant_product
+        constant_multiplier #(
+            .BITS(POWER_BITS),
+            .IS_SIGNED(0),
+            .CONSTANT(`PHONG_CONSTANT_WEIGHT_W << (WEIGHT_FRACTION - COEFFICIENT_FRACTION)),
+            .CONSTANT_BITS(WEIGHT_BITS),
+            .LATENCY(`PHONG_PRODUCTS_LATENCY)
+        ) u_specular (
+            .clk(clk),
+            .word(power),
+            .product(specular)
+        );
+      end else begin : gen_product
+        wire [WEIGHT_BITS+POWER_BITS-1:0] product;
+
+        multiplier #(
+            .A_BITS  (WEIGHT_BITS),
+            .B_BITS  (POWER_BITS),
+            .A_SIGNED(0),
+            .B_SIGNED(0)
+        ) u_specular (
+            .clk(clk),
+            .a(weight),
+            .b(power),
+            .product(product)
+        );
+
+        delay #(
+            .BITS  (WEIGHT_BITS + POWER_BITS),
+            .CYCLES(`PHONG_PRODUCTS_LATENCY - `PHONG_MULTIPLIER_LATENCY)
+        ) u_wait (
+            .clk(clk),
+            .in (product),
+            .out(specular)
+        );
+      end
     end else begin : gen_no_specular
       assign specular = {WEIGHT_BITS + POWER_BITS{1'b0}};
     end
@@ -238,7 +271,12 @@ module shading_unit #(
   genvar c;
   generate
     for (c = 0; c < CHANNELS; c = c + 1) begin : gen_channel
-      colour_channel u_channel (
+      colour_channel #(
+          .AMBIENT(c == 0 ? `PHONG_CONSTANT_AMBIENT_RED
+                 : c == 1 ? `PHONG_CONSTANT_AMBIENT_GREEN : `PHONG_CONSTANT_AMBIENT_BLUE),
+          .DIFFUSION(c == 0 ? `PHONG_CONSTANT_DIFFUSE_RED
+                   : c == 1 ? `PHONG_CONSTANT_DIFFUSE_GREEN : `PHONG_CONSTANT_DIFFUSE_BLUE)
+      ) u_channel (
           .clk(clk),
           .write_ambient(write_ambient[c]),
           .write_diffuse(write_diffuse[c]),

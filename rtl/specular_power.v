@@ -22,6 +22,8 @@ module specular_power #(
     parameter POWER_BITS        = `PHONG_POWER_BITS,         // all of them fraction
     parameter OCTAVES           = `PHONG_LOG_OCTAVES,        // 0: cos(s)^n is 0 if cos(s) <= 1/2
     parameter BYPASS            = `PHONG_POWER_BYPASS,       // 0: n is never 1
+    parameter CONSTANT          = `PHONG_CONSTANT_EXPONENT,  // 1: n is EXPONENT
+    parameter EXPONENT          = `PHONG_CONSTANT_EXPONENT_N,
     parameter LATENCY           = `PHONG_SPECULAR_POWER_LATENCY
 ) (
     input  wire                     clk,
@@ -201,21 +203,37 @@ module specular_power #(
   reg [WIDE_BITS-1:0] wide_p17;
   reg [LOG_BITS-1:0] x_p18;
 
-  multiplier #(
-      .A_BITS  (LOG_MANTISSA_BITS),
-      .B_BITS  (EXPONENT_BITS),
-      .A_SIGNED(0),
-      .B_SIGNED(0)
-  ) u_times_exponent (
-      .clk(clk),
-      .a(mantissa_p13[G_BITS-1-:LOG_MANTISSA_BITS]),
-      .b(exponent),
-      .product(product_p15)
-  );
+  generate
+    if (CONSTANT) begin : gen_constant
+      constant_multiplier #(
+          .BITS(LOG_MANTISSA_BITS),
+          .IS_SIGNED(0),
+          .CONSTANT(EXPONENT),
+          .CONSTANT_BITS(EXPONENT_BITS),
+          .LATENCY(`PHONG_TIMES_EXPONENT_LATENCY)
+      ) u_times_exponent (
+          .clk(clk),
+          .word(mantissa_p13[G_BITS-1-:LOG_MANTISSA_BITS]),
+          .product(product_p15)
+      );
+    end else begin : gen_variable
+      multiplier #(
+          .A_BITS  (LOG_MANTISSA_BITS),
+          .B_BITS  (EXPONENT_BITS),
+          .A_SIGNED(0),
+          .B_SIGNED(0)
+      ) u_times_exponent (
+          .clk(clk),
+          .a(mantissa_p13[G_BITS-1-:LOG_MANTISSA_BITS]),
+          .b(exponent),
+          .product(product_p15)
+      );
+    end
+  endgenerate
 
   delay #(
       .BITS  (K_BITS),
-      .CYCLES(`PHONG_LEFT_SHIFTER_LATENCY + `PHONG_MULTIPLIER_LATENCY)
+      .CYCLES(`PHONG_LEFT_SHIFTER_LATENCY + `PHONG_TIMES_EXPONENT_LATENCY)
   ) u_k (
       .clk(clk),
       .in (k_p11),

@@ -11,11 +11,14 @@ import json
 import re
 import shutil
 import sys
+from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 
 from model.config import DEFAULT as CONFIG
+from model.config import Config
+from model.frame import Frame
 from model.scene import bundled_scenes, load_scene
 from model.scene_to_spans import front_end
 from scripts import records
@@ -34,26 +37,32 @@ def registers() -> dict[str, set[str]]:
     return found
 
 
+def toggles_per_pixel(frame: Frame, config: Config, folder: Path) -> tuple[int, float]:
+    """Pixels of `frame`, and register toggles a pixel, on a build of `config`; counts into
+    `folder`, which is emptied first."""
+    shutil.rmtree(folder, ignore_errors=True)
+    bench = Bench("frame_bench", config, coverage=folder)
+    pixels = len(simulate_jobs([Job(frame)], config, bench)[0].pixels.x)
+    declared = registers()
+    toggles = sum(
+        count
+        for (kind, name, _, what), count in points(folder).items()
+        if kind == "toggle" and re.search(r"[a-z]\w*", what)[0] in declared[name]
+    )
+    return pixels, toggles / pixels
+
+
 def main() -> int:
     """Measure and print; returns the exit code."""
-    folder = BUILD / "activity"
-    bench = Bench("frame_bench", CONFIG, coverage=folder)
-    declared = registers()
     table = Table(title="register toggles a pixel, 640x480")
     for title in ("scene", "pixels", "toggles a pixel"):
         table.add_column(title, justify="right")
     found = {}
     for scene in bundled_scenes():
-        shutil.rmtree(folder, ignore_errors=True)
         frame = front_end(load_scene(scene)).frame
-        pixels = len(simulate_jobs([Job(frame)], CONFIG, bench)[0].pixels.x)
-        toggles = sum(
-            count
-            for (kind, name, _, what), count in points(folder).items()
-            if kind == "toggle" and re.search(r"[a-z]\w*", what)[0] in declared[name]
-        )
-        found[scene] = {"pixels": pixels, "toggles_per_pixel": round(toggles / pixels, 1)}
-        table.add_row(scene, str(pixels), f"{toggles / pixels:.0f}")
+        pixels, toggles = toggles_per_pixel(frame, CONFIG, BUILD / "activity")
+        found[scene] = {"pixels": pixels, "toggles_per_pixel": round(toggles, 1)}
+        table.add_row(scene, str(pixels), f"{toggles:.0f}")
     Console().print(table)
     figure = ", ".join(f"{scene} {of['toggles_per_pixel']:.0f}" for scene, of in found.items())
     records.save(

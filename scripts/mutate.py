@@ -51,8 +51,8 @@ _UNITS = ("inverse_sqrt", "normalizer", "reflection", "specular_power", "specula
           "specular_weight")  # fmt: skip
 BENCHES = {
     **{name: ("primitives",) for name in (
-        "multiplier", "narrow_multiplier", "leading_zeros", "left_shifter", "round_saturate",
-        "delay", "rom", "ram", "small_ram",
+        "multiplier", "constant_multiplier", "narrow_multiplier", "leading_zeros", "left_shifter",
+        "round_saturate", "delay", "rom", "ram", "small_ram",
     )},
     **{name: (name,) for name in (*_UNITS, "shading_unit")},
     "normal_interpolator": ("primitives", "phong_pipeline"),

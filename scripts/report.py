@@ -10,7 +10,9 @@ from __future__ import annotations
 
 import base64
 import csv
+import itertools
 import json
+import os
 import subprocess
 import sys
 from contextlib import redirect_stdout
@@ -25,16 +27,18 @@ from plotly.offline import get_plotlyjs
 
 from model import error_budget
 from model.config import DEFAULT as C
+from model.config import TECHNIQUES
 from model.frame import InputError
-from model.report import failures
+from model.pruning import Row, prune
+from model.report import SCHEMA, failures
 from model.scene import bundled_scenes
 from model.spans import read_spans
 from scripts import records
 from scripts import run as run_scene
-from scripts.run import Steps
+from scripts.results import SCHEMA as RESULTS
+from scripts.stability import SCHEMA as STABILITY
 from sim.build import BUILD, ROOT
 
-TECHNIQUES = {"phong": "Phong", "gouraud": "Gouraud", "flat": "flat"}
 SHAPES = ("circle", "square", "diamond", "triangle-up", "x", "cross", "star", "pentagon")
 #: Colours that can be told apart with any kind of colour vision, on white and on black.
 COLOURS = (
@@ -51,6 +55,23 @@ ERRORS = {
     "rms_lsb": "RMS error, LSB", "max_lsb": "largest error, LSB", "p999_lsb": "99.9 % error, LSB",
     "mean_lsb": "mean error, LSB", "wrong": "share not correctly rounded",
 }  # fmt: skip
+#: More of them in the study of tessellation.
+SURFACE_ERRORS = {
+    "rms_lsb": "RMS error, LSB", "highlight_rms_lsb": "RMS error in highlights, LSB",
+    "facing_rms_lsb": "RMS error facing the eye, LSB", "max_lsb": "largest error, LSB",
+    "p999_lsb": "99.9 % error, LSB", "mean_lsb": "mean error, LSB",
+    "method_rms_lsb": "RMS error before rounding, LSB",
+    "method_max_lsb": "largest error before rounding, LSB",
+}  # fmt: skip
+SIZES = {"triangles": "triangles", "cycles": "cycles a frame", "spans": "spans"}
+
+#: Errors of perfect rounding, where there is one figure for it.
+PERFECT = {"rms_lsb": 12**-0.5, "max_lsb": 0.5, "mean_lsb": 0.25}
+
+#: What must be there of the sweep's tables.
+PRECISION = ("method", "label", "cycles", "frame_us", "clock_mhz", "clock_source", "max_lsb",
+             "rms_lsb", "p999_lsb", "mean_lsb", "correctly_rounded", "psnr_db")  # fmt: skip
+TESSELLATION = ("shape", "technique", "level", "triangles", "spans", "cycles", "max_lsb")
 
 
 @dataclass
@@ -65,7 +86,8 @@ class View:
 @dataclass
 class SceneResult:
     """A bundled scene: the report of its run, the pictures that can be laid over each other, the
-    error map, what failed, and the rows of the error budget of its worst material."""
+    error map, what failed, the rows of the error budget of its worst material, and what the scene
+    needs of the pipeline."""
 
     name: str
     report: dict
@@ -73,6 +95,7 @@ class SceneResult:
     error_map: str
     failures: list[str]
     budget: list[error_budget.Row] = field(default_factory=list)
+    features: dict[str, Row] = field(default_factory=dict)
 
 
 def data_uri(path: Path) -> str:
@@ -80,22 +103,35 @@ def data_uri(path: Path) -> str:
     return "data:image/png;base64," + base64.b64encode(path.read_bytes()).decode()
 
 
-def load(path: Path):
-    """The JSON in `path`, or None if there is none. Raises InputError if it is broken."""
+def load(path: Path, schema: int | None = None):
+    """The JSON in `path`, or None if there is none.
+
+    Raises InputError if it is broken, or of another layout than `schema`.
+    """
     if not path.is_file():
         return None
     try:
-        return json.loads(path.read_text())
+        found = json.loads(path.read_text())
     except ValueError as error:
         raise InputError(f"{path}: not JSON: {error}") from None
+    if schema is not None and found.get("schema") != schema:
+        raise InputError(f"{path}: another version wrote it; remove it, or make it anew")
+    return found
 
 
-def load_csv(path: Path) -> list[dict]:
-    """The rows of `path`, numbers where they are; empty if there is no such file."""
+def load_csv(path: Path, needed: tuple[str, ...]) -> list[dict]:
+    """The rows of `path`, numbers where they are; empty if there is no such file.
+
+    Raises InputError if one of the columns `needed` is missing.
+    """
     if not path.is_file():
         return []
     with path.open(newline="") as file:
-        return [{k: _number(v) for k, v in row.items()} for row in csv.DictReader(file)]
+        rows = [{k: _number(v) for k, v in row.items()} for row in csv.DictReader(file)]
+    for name in needed:
+        if rows and name not in rows[0]:
+            raise InputError(f"{path}: no column `{name}`; remove it, or make it anew")
+    return rows
 
 
 def _number(text):
@@ -111,40 +147,57 @@ def newest_source() -> float:
     return max(p.stat().st_mtime for p in files if p.is_file() and "__pycache__" not in p.parts)
 
 
-def run_missing(names: list[str], build: Path, steps: Steps) -> None:
-    """Run each of the scenes `names` that has no result in `build`, or one older than the sources.
+def folder(build: Path, name: str, technique: str) -> Path:
+    """Where `make run` leaves the result of a scene by a technique."""
+    return build / (name if technique == C.technique else f"{name}-{technique}")
+
+
+def run_missing(names: list[str], build: Path) -> None:
+    """Run each of the scenes `names`, by every technique, that has no result in `build`, or one
+    older than the sources.
 
     Raises InputError if one cannot be run; one that fails its checks says so on the page.
     """
     changed = newest_source()
-    for name in names:
-        path = build / name / "report.json"
-        if path.is_file() and path.stat().st_mtime >= changed:
-            continue
-        with steps.step(f"make run SCENE={name}"), redirect_stdout(StringIO()):
-            if run_scene.main([f"--scene={name}", f"--out={path.parent}"]) == 2:
-                raise InputError(f"{name} cannot be run")
+    todo = []
+    for name, technique in itertools.product(names, TECHNIQUES):
+        path = folder(build, name, technique) / "report.json"
+        if not path.is_file() or path.stat().st_mtime < changed:
+            todo.append((name, technique, path.parent))
+    for k, (name, technique, out) in enumerate(todo):
+        what = f"make run SCENE={name} TECHNIQUE={technique}"
+        print(f"{what} ({k + 1} of {len(todo)})", file=sys.stderr, flush=True)
+        with redirect_stdout(StringIO()):
+            code = run_scene.main([f"--scene={name}", f"--technique={technique}", f"--out={out}"])
+        if code == 2:
+            raise InputError(f"{what} failed")
 
 
 def scene_result(name: str, build: Path) -> SceneResult | None:
     """What the runs of `name` left below `build`; None if it was not run."""
-    folder = build / name
-    report = load(folder / "report.json")
+    own = folder(build, name, C.technique)
+    report = load(own / "report.json", SCHEMA)
     if report is None:
         return None
     views = []
-    for key, label in TECHNIQUES.items():
-        other = folder if key == "phong" else build / f"{name}-{key}"
-        if (other / "report.json").is_file():
-            views.append(View(key, f"{label}, RTL", data_uri(other / "frame.png")))
-    views.append(View("reference", "reference in float64", data_uri(folder / "reference.png")))
-    frame = read_spans(folder / "spans", C)
+    for key in TECHNIQUES:
+        picture = folder(build, name, key) / "frame.png"
+        if picture.is_file():
+            views.append(View(key, f"{title(key)}, RTL", data_uri(picture)))
+    views.append(View("reference", "reference in float64", data_uri(own / "reference.png")))
+    frame = read_spans(own / "spans", C)
     used = np.unique(frame.spans["material"]).tolist()
     budget = [error_budget.rows(material, frame, C) for material in used]
     worst = max(budget, key=lambda rows: rows[-1].bound, default=[])
     return SceneResult(
-        name, report, views, data_uri(folder / "error.png"), failures(report), worst
+        name, report, views, data_uri(own / "error.png"), failures(report), worst,
+        {row.feature: row for row in prune(frame)[1]},
     )  # fmt: skip
+
+
+def title(technique: str) -> str:
+    """The name of a technique: some are those of people."""
+    return technique.capitalize() if technique in ("phong", "gouraud") else technique
 
 
 # -- plots -----------------------------------------------------------------------------------------
@@ -158,6 +211,17 @@ def figure(traces, **layout) -> dict:
 
 def _axis(title: str, log: bool = False) -> dict:
     return {"title": {"text": title}, "type": "log" if log else "linear"}
+
+
+def _level(text: str, y: float | None) -> dict:
+    """A dashed line across a plot with a logarithmic axis, and what it is."""
+    if y is None:
+        return {}
+    line = {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": y, "y1": y,
+            "line": {"color": "#d3552b", "dash": "dash"}, "layer": "below"}  # fmt: skip
+    note = {"xref": "paper", "x": 0, "y": float(np.log10(y)), "text": text, "showarrow": False,
+            "yanchor": "bottom", "xanchor": "left"}  # fmt: skip
+    return {"shapes": [line], "annotations": [note]}
 
 
 def budget_plot(results: dict, scenes: list[str]) -> dict:
@@ -180,15 +244,10 @@ def budget_plot(results: dict, scenes: list[str]) -> dict:
                 "<extra></extra>",
             )
         )  # fmt: skip
-    available = results["cycles_available"]
-    limit = f"{results['fps']:g} frames/s at {results['clock_hz'] / 1e6:g} MHz"
-    line = {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": available, "y1": available,
-            "line": {"color": "#d3552b", "dash": "dash"}}  # fmt: skip
-    note = {"xref": "paper", "x": 1, "y": np.log10(available), "text": f"budget: {limit}",
-            "showarrow": False, "yanchor": "bottom", "xanchor": "right"}  # fmt: skip
+    limit = f"budget: {results['fps']:g} frames/s at {results['clock_hz'] / 1e6:g} MHz"
     return figure(
-        traces, barmode="group", yaxis=_axis("cycles a frame", True), shapes=[line],
-        annotations=[note],
+        traces, barmode="group", yaxis=_axis("cycles a frame", True),
+        **_level(limit, results["cycles_available"]),
     )  # fmt: skip
 
 
@@ -257,37 +316,48 @@ def precision_plots(rows: list[dict]) -> dict[str, dict]:
                     )  # fmt: skip
             plots[f"{cost}/{error}"] = figure(
                 traces, xaxis=_axis(cost_title, True), yaxis=_axis(error_title, True),
-                hovermode="closest",
+                hovermode="closest", **_level("perfect rounding", PERFECT.get(error)),
             )  # fmt: skip
     return plots
 
 
 def tessellation_plots(rows: list[dict]) -> dict[str, dict]:
-    """{"<shape>/<error>": error against the true surface over cycles, a curve a technique}."""
+    """{"<shape>/<size>/<error>": error against the true surface over the size of its mesh, a
+    curve a technique}."""
     plots = {}
     techniques = list(dict.fromkeys(row["technique"] for row in rows))
-    for shape in dict.fromkeys(row["shape"] for row in rows):
-        for error, title in ERRORS.items():
-            traces = []
-            for k, technique in enumerate(techniques):
-                own = [r for r in rows if (r["shape"], r["technique"]) == (shape, technique)]
-                own = [r for r in own if r.get(error) and r.get("cycles")]
-                own.sort(key=lambda r: r["triangles"])
-                traces.append(
-                    go.Scatter(
-                        name=technique, x=[r["cycles"] for r in own], y=[r[error] for r in own],
-                        customdata=[[r["triangles"], r["spans"], r["level"]] for r in own],
-                        mode="lines+markers", line={"color": COLOURS[k % len(COLOURS)]},
-                        marker={"symbol": SHAPES[k % len(SHAPES)], "size": 9},
-                        hovertemplate="<b>" + technique + "</b><br>%{customdata[0]:,} triangles, "
-                        "%{customdata[1]:,} spans<br>%{x:,} cycles<br>%{y:.4g} LSB<extra></extra>",
-                    )
-                )  # fmt: skip
-            if any(trace.x for trace in traces):
-                plots[f"{shape}/{error}"] = figure(
-                    traces, xaxis=_axis("cycles a frame", True), yaxis=_axis(title, True),
-                )  # fmt: skip
+    shapes = dict.fromkeys(row["shape"] for row in rows)
+    for shape, size, error in itertools.product(shapes, SIZES, SURFACE_ERRORS):
+        traces = []
+        for k, technique in enumerate(techniques):
+            own = [r for r in rows if (r["shape"], r["technique"]) == (shape, technique)]
+            own = [r for r in own if r.get(error) and r.get(size)]
+            own.sort(key=lambda r: r["triangles"])
+            if not own:
+                continue
+            traces.append(
+                go.Scatter(
+                    name=title(technique), x=[r[size] for r in own], y=[r[error] for r in own],
+                    text=[_surface_hover(r) for r in own], hovertemplate="%{text}<extra></extra>",
+                    mode="lines+markers", line={"color": COLOURS[k % len(COLOURS)]},
+                    marker={"symbol": SHAPES[k % len(SHAPES)], "size": 9},
+                )
+            )  # fmt: skip
+        if traces:
+            plots[f"{shape}/{size}/{error}"] = figure(
+                traces, xaxis=_axis(SIZES[size], True), yaxis=_axis(SURFACE_ERRORS[error], True),
+            )  # fmt: skip
     return plots
+
+
+def _surface_hover(row: dict) -> str:
+    lines = [f"<b>{title(row['technique'])}</b>"]
+    lines += [f"{row[size]:,.0f} {words}" for size, words in SIZES.items() if row.get(size)]
+    lines += [
+        f"{words.replace(', LSB', '')} {row[error]:.4g} LSB"
+        for error, words in SURFACE_ERRORS.items() if row.get(error) is not None
+    ]  # fmt: skip
+    return "<br>".join(lines)
 
 
 def error_plot(rows: list[dict]) -> dict:
@@ -343,12 +413,18 @@ def commit() -> str:
     return done.stdout.strip()
 
 
+def load_orders(build: Path) -> dict:
+    """{shape: {technique: {error: order of convergence}}}; empty if there are none."""
+    return (load(build / "sweep" / "tessellation.json") or {}).get("orders", {})
+
+
 def page(build: Path = BUILD, record_folder: Path = records.FOLDER) -> str:
     """The page from what is below `build`. Raises InputError or OSError if a file is broken."""
     scenes = [s for name in bundled_scenes() if (s := scene_result(name, build))]
-    results, stability = load(build / "results.json"), load(build / "stability" / "report.json")
-    precision = load_csv(build / "sweep" / "precision.csv")
-    tessellation = load_csv(build / "sweep" / "tessellation.csv")
+    results = load(build / "results.json", RESULTS)
+    stability = load(build / "stability" / "report.json", STABILITY)
+    precision = load_csv(build / "sweep" / "precision.csv", PRECISION)
+    tessellation = load_csv(build / "sweep" / "tessellation.csv", TESSELLATION)
     plots = {
         "precision": precision_plots(precision),
         "tessellation": tessellation_plots(tessellation),
@@ -357,7 +433,12 @@ def page(build: Path = BUILD, record_folder: Path = records.FOLDER) -> str:
         "stages": {"": stages_plot(scenes)} if any(s.budget for s in scenes) else {},
     }
     costs = {key: title for key, title in COSTS.items() if f"{key}/max_lsb" in plots["precision"]}
-    shapes = list(dict.fromkeys(row["shape"] for row in tessellation))
+    shapes = {row["shape"]: row["shape"] for row in tessellation}
+    surface_errors = {
+        key: words
+        for key, words in SURFACE_ERRORS.items()
+        if tessellation and key in tessellation[0]
+    }
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(Path(__file__).parent), autoescape=True,
         undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True,
@@ -365,17 +446,15 @@ def page(build: Path = BUILD, record_folder: Path = records.FOLDER) -> str:
     return environment.get_template("report.html.j2").render(
         scenes=scenes, results=results, stability=stability, precision=precision,
         tessellation=tessellation, records=recorded(record_folder), costs=costs, errors=ERRORS,
-        shapes=shapes, plots=plots, plotly=get_plotlyjs(), commit=commit(),
-        techniques=[key for key in TECHNIQUES if any(
-            view.key == key for scene in scenes for view in scene.views
-        )],
+        shapes=shapes, sizes=SIZES, surface_errors=surface_errors, orders=load_orders(build),
+        title=title, plots=plots, plotly=get_plotlyjs(), commit=commit(),
     )  # fmt: skip
 
 
 def main(build: Path = BUILD) -> int:
     """Make the page; returns the exit code."""
     try:
-        run_missing(bundled_scenes(), build, Steps())
+        run_missing(bundled_scenes(), build)
         text = page(build)
         path = build / "report" / "index.html"
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -385,7 +464,7 @@ def main(build: Path = BUILD) -> int:
     except (InputError, OSError) as error:
         print(f"Error: {error}", file=sys.stderr)
         return 2
-    print(f"{path.relative_to(ROOT)}: {path.stat().st_size / 1e6:.1f} MB, opens in any browser")
+    print(f"{os.path.relpath(path)}: {path.stat().st_size / 1e6:.1f} MB, opens in any browser")
     return 0
 
 

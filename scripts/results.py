@@ -19,6 +19,8 @@ from model.scene_to_spans import front_end
 from sim.build import BUILD
 from sim.run_frame import Job, SimResult, simulate_jobs
 
+#: Version of the layout of build/results.json.
+SCHEMA = 1
 FPS = 30
 SIZES = ((512, 512), (640, 480), (1920, 1080))
 CLOCK_HZ = 200e6
@@ -95,7 +97,12 @@ def main() -> int:
         measured = measure(scene)
         rows.append(row(scene, measured))
         found += [as_dict(scene, *pair) for pair in zip(SIZES, measured, strict=True)]
-    said = {"fps": FPS, "clock_hz": CLOCK_HZ, "cycles_available": int(CLOCK_HZ // FPS)}
+    said = {
+        "schema": SCHEMA,
+        "fps": FPS,
+        "clock_hz": CLOCK_HZ,
+        "cycles_available": int(CLOCK_HZ // FPS),
+    }
     BUILD.mkdir(exist_ok=True)
     (BUILD / "results.json").write_text(json.dumps(said | {"rows": found}, indent=1) + "\n")
     print("\n".join([HEADER, *rows]))

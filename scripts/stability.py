@@ -24,6 +24,8 @@ from sim import stability as simulated
 from sim.build import BUILD, BuildError
 from sim.run_frame import SimulationError
 
+#: Version of the layout of report.json.
+SCHEMA = 2
 OUT = BUILD / "stability"
 MESHES = 100_000
 LONG_RUN = 1_000_000
@@ -182,7 +184,7 @@ def run(steps: Steps) -> dict:
     with steps.step("large_frame"):
         rows += simulated.run_cases([simulated.scene_case(*LARGE)])
     return {
-        "schema": 1,
+        "schema": SCHEMA,
         "rows": [row.as_dict() for row in rows],
         "errors": errors,
         "powers": powers,

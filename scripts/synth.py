@@ -6,13 +6,18 @@ Exit code: 0; 1 if a tool failed; 2 if the input is wrong, with one line on stde
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import sys
+from pathlib import Path
 
 from rich.console import Console
 from rich.table import Table
 
 from model.config import DEFAULT, TECHNIQUES, Config
 from model.frame import InputError
+from model.pruning import prune
+from model.scene import load_scene
+from model.scene_to_spans import front_end
 from scripts import records, synthesis
 from scripts.records import Row
 from scripts.run import Steps
@@ -31,6 +36,7 @@ def parse(argv) -> tuple[Config, int, tuple[int, ...], bool]:
     """Configuration, speed grade, seeds, and whether to count gates. Raises InputError."""
     parser = _Parser(prog="synth", description=__doc__.partition("\n")[0])
     parser.add_argument("--config", default="", help="name of a configuration")
+    parser.add_argument("--scene", default="", help="build only what this scene needs")
     parser.add_argument("--grade", default="", help="speed grade of the chip")
     parser.add_argument("--seeds", default="", help="how many seeds to route")
     parser.add_argument("--gates", default="", help="1: count gate equivalents, too")
@@ -46,7 +52,13 @@ def parse(argv) -> tuple[Config, int, tuple[int, ...], bool]:
         raise InputError(f"GATES is `{given.gates}`, not 0 or 1")
     if given.gates == "1" and not synthesis.LIBERTY.is_file():
         raise InputError("GATES=1 needs a library of cells: apt-get install qflow-tech-osu018")
-    return CONFIGS[name], int(grade), tuple(range(1, int(seeds) + 1)), given.gates == "1"
+    config = CONFIGS[name]
+    if given.scene:
+        frame = front_end(load_scene(given.scene, config=config), config).frame
+        config = dataclasses.replace(
+            prune(frame, config)[0], name=f"{name}-{Path(given.scene).stem}"
+        )
+    return config, int(grade), tuple(range(1, int(seeds) + 1)), given.gates == "1"
 
 
 def table(report: dict) -> Table:

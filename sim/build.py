@@ -128,13 +128,15 @@ class Bench(Verilator):
         trace: bool = False,
         coverage: Path | None = None,
         netlist: bool = False,
+        quick: bool = False,
     ):
         """A bench with top level `top`: sim/<top>.v, a module of the design, or a text in
         `sources` (file name: text).
 
         rtl: folder of the design (a mutated copy, say). trace: able to write a VCD.
         coverage: folder for the coverage counts of each run. netlist: rtl holds a netlist: no
-        lint, and a compiler that is done sooner.
+        lint, and a compiler that is done sooner. quick: not optimized, for runs of a few thousand
+        clocks.
         """
         self._verilator = (
             ["-Wno-lint", "-Wno-style", "-Wno-fatal", "--output-split-cfuncs", "200"]
@@ -143,7 +145,7 @@ class Bench(Verilator):
             if config == DEFAULT
             else ["-Wall", "-Wno-UNUSED"]  # what a configuration leaves out need not be used
         )
-        self._cxx = CXX_FLAGS.replace("-O2", "-O1") if netlist else CXX_FLAGS
+        self._cxx = CXX_FLAGS.replace("-O2", "-O0" if quick else "-O1" if netlist else "-O2")
         super().__init__()
         self._top, self._config, self._rtl, self._trace = top, config, rtl, trace
         self._texts = dict(sources or {})
@@ -152,7 +154,7 @@ class Bench(Verilator):
         include = generate_header(config)
         files = sorted(rtl.glob("*.v*")) + sorted(SIM.glob("*.v")) + [SIM / "main.cpp"]
         content = _digest(
-            CXX_FLAGS,
+            self._cxx,
             str(trace),
             str(bool(self._coverage)),
             include / "phong_config.vh",

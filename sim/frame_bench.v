@@ -36,7 +36,7 @@ module frame_bench #(
     output reg [31:0] stall_cycles,   // of `cycles`, after the first pixel: no pixel was taken
     output reg [31:0] pixel_count,
     output reg [31:0] illegal_spans,
-    output reg [31:0] unsupported,    // from the first register write for the job on
+    output reg [31:0] unsupported,    // of all jobs and register writes so far
     output reg [31:0] zero_normals,   // pixels whose normal was the zero vector
     output reg [31:0] extra_pixels    // pixels after the last one
 );
@@ -76,11 +76,10 @@ module frame_bench #(
   reg [31:0] spans_read, clocks, waited;
   reg accepted;  // a span of this job was accepted
   reg [31:0] random;
-  reg over;  // a job is; the next write is for another
 
   initial begin
     running = 0;
-    over = 1;
+    unsupported = 0;
     s_valid = 0;
     m_ready = 0;
   end
@@ -94,8 +93,7 @@ module frame_bench #(
   wire [31:0] pixel_count_next = pixel_count + {31'b0, take};
 
   always @(posedge clk) begin
-    over <= running | (over & ~write_enable);
-    unsupported <= over & write_enable ? 0 : unsupported + {31'b0, unsupported_now};
+    unsupported <= unsupported + {31'b0, unsupported_now};
     random <= next_random(random);
     m_ready <= running & (stall_chance == 0 | random[7:0] >= stall_chance);
 

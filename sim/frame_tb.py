@@ -17,6 +17,7 @@ class FrameTB:
 
     def __init__(self, dut):
         self.dut = dut
+        self.unsupported = 0  # in the jobs before
         for name in ("write_enable", "start", "stop_after", "idle_chance"):
             getattr(dut, name).value = 0
         dut.stall_chance.value = 0
@@ -56,6 +57,8 @@ class FrameTB:
         await FallingEdge(dut.running)
         dut.start.value = 0
         counters = {name: int(getattr(dut, name).value) for name in COUNTERS}
+        counters["unsupported"] -= self.unsupported
+        self.unsupported += counters["unsupported"]
         if not stop_after:
             await ClockCycles(dut.clk, 300)
             counters["extra_pixels"] = int(dut.extra_pixels.value)

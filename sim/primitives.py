@@ -16,6 +16,7 @@ from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, FallingEdge
 
 from model.config import DEFAULT as C
+from model.config import levels
 from model.registers import address_bits, word_bits
 from sim.unit_tb import THIN
 
@@ -55,6 +56,14 @@ def _narrow(a_bits, b_bits):
         {"product": a_bits + b_bits},
         dict(A_BITS=a_bits, B_BITS=b_bits),
     )
+
+
+def _constant(bits, signed, constant, constant_bits, wait=0):
+    return Instance(
+        "constant_multiplier", {"word": f"a[0+:{bits}]"}, {"product": bits + constant_bits},
+        dict(BITS=bits, IS_SIGNED=signed, CONSTANT=constant, CONSTANT_BITS=constant_bits,
+             LATENCY=levels(constant) + wait),
+    )  # fmt: skip
 
 
 def _leading_zeros(bits, count_bits):
@@ -121,6 +130,15 @@ ROUNDERS = {
     for n, drop, out in ((10, 4, 3), (10, 4, 6), (9, 1, 5), (9, 1, 8), (12, 7, 2))
     for signed in (0, 1)
 }
+#: All short constants; long ones with few, many and the most digits; one that waits.
+CONSTANTS = {
+    f"constant_{'us'[signed]}_{constant}": _constant(6, signed, constant, 5)
+    for constant in range(32) for signed in (0, 1)
+} | {
+    f"constant_{'us'[signed]}_{constant}": _constant(18, signed, constant, 18)
+    for constant in (1 << 17, (1 << 18) - 1, 0x15555, 0x2AAAA, 0x2DB6D, 26214, 98765)
+    for signed in (0, 1)
+} | {"constant_waits": _constant(18, 1, 0x2DB6D, 18, wait=2)}  # fmt: skip
 MEMORIES = {
     "ram_4x9": _memory("ram", 4, 9), "ram_9x36": _memory("ram", 9, 36),
     "small_ram_3x9": _memory("small_ram", 3, 9), "small_ram_4x17": _memory("small_ram", 4, 17),
@@ -135,6 +153,7 @@ DELAYS = {
 #: Instances whose parameters are the ones that the modules have if nothing is said.
 DEFAULTS = {
     "default_multiplier": _multiplier(18, 18, 1, 1),
+    "default_constant_multiplier": _constant(18, 1, 1, 18, wait=3),
     "default_narrow_multiplier": _narrow(11, 7),
     "default_leading_zeros": _leading_zeros(31, 5),
     "default_left_shifter": _left_shifter(32, 5),
@@ -147,6 +166,7 @@ DEFAULTS = {
 
 INSTANCES: dict[str, Instance] = {
     **MULTIPLIERS,
+    **CONSTANTS,
     "narrow_11x7": _narrow(11, 7), "narrow_5x8": _narrow(5, 8), "narrow_6x3": _narrow(6, 3),
     "zeros_31": _leading_zeros(31, 5), "zeros_22": _leading_zeros(22, 5),
     "zeros_10": _leading_zeros(10, 4), "zeros_12": _leading_zeros(12, 4),
@@ -166,6 +186,7 @@ INSTANCES: dict[str, Instance] = {
             "half_x": C.half_vector.bits, "half_z": C.half_vector.bits, "two_sided": 1,
             "write_weight": 1, "write_exponent": 1, "write_ambient": 3, "write_diffuse": 3,
             "table_address": TABLE_ADDRESS_BITS, "table_word": word_bits(C),
+            "unsupported": 1,
         },
         latency="1",
     ),

@@ -248,8 +248,8 @@ MODULES = {
         children=(
             Child("gen_specular.gen_reflection.u_reflection", "reflection", "0"),
             Child(
-                "gen_specular.gen_power.u_specular_power.gen_tables.u_specular_power", "specular_power",
-                L.format("REFLECTION"),
+                "gen_specular.gen_power.u_specular_power.gen_tables.u_specular_power",
+                "specular_power", L.format("REFLECTION"),
             ),
             Child(
                 "gen_specular.gen_weight.u_specular_weight", "specular_weight",

@@ -179,6 +179,17 @@ def test_where_the_results_go(arguments, out):
     assert run.parse(arguments).out == Path(out)
 
 
+def test_a_pruned_run(start, scene, tmp_path):
+    code, shown, lines = start(f"--scene={scene}", "--prune=1")
+    assert (code, lines) == (0, [])
+    report = json.loads((tmp_path / "out/report.json").read_text())
+    assert report["config"]["name"] == "default-pruned" and report["unsupported"] == 0
+    assert report["config"]["weight_function"] is False
+    code, _, _ = start(f"--scene={scene}", "--prune=0")
+    assert code == 0
+    assert json.loads((tmp_path / "out/report.json").read_text())["config"]["name"] == "default"
+
+
 # -- exit code 1 -----------------------------------------------------------------------------------
 
 
@@ -227,6 +238,19 @@ def test_a_missed_bound(start, scene, monkeypatch):
     code, _, lines = start(f"--scene={scene}")
     assert code == 1 and len(lines) == 1
     assert lines[0].startswith("FAILED: the largest error is ") and "bound 0.25" in lines[0]
+
+
+def test_a_build_pruned_to_another_scene(start):
+    """The torus needs W(i), which the teapot's build leaves out: the reason is said."""
+
+    def flagged(result):
+        result.unsupported = 32
+
+    arguments = "--scene=torus", "--size=32x24", "--prune=teapot"
+    code, _, lines = start(*arguments, simulate=broken(flagged))
+    assert code == 1
+    assert "left out, but needed: weight_function: W depends on i in 1 of 1 material" in lines
+    assert "FAILED: 32 spans or register writes need what this build leaves out" in lines
 
 
 # -- exit code 2 -----------------------------------------------------------------------------------

@@ -15,8 +15,8 @@ def test_resources_and_a_frame_in_ecp5_cells():
     synthesis = json.loads((BUILD / "synth" / "default" / "synthesis.json").read_text())
     resources = synthesis["resources"]
     assert resources["dsp"] <= 19 and resources["ebr"] <= 4 and resources["lut"] <= 2500, resources
-    # Flow control is reset (of the normalizer a flag), the datapath is not: nothing waits for
-    # data to be flushed.
+    # Flow control is reset (of the normalizer a flag), the datapath is not: nothing waits for data
+    # to be flushed.
     assert set(synthesis["resets"]) == {"span_walker", "normalizer", "pixel_fifo"}
     record = records.load("synth-grade6")
     said = " ".join(row["figure"] for row in record["rows"])

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from model.frame import InputError
 from model.scene import bundled_scenes
 from scripts import report
 from scripts import run as run_scene
@@ -70,10 +71,14 @@ def build(tmp_path_factory):
          "p999_lsb": 20 / 4**k, "mean_lsb": 3 / 4**k}
         for j, t in enumerate(("flat", "Gouraud", "Phong")) for k in range(4)
     ])  # fmt: skip
+    orders = {"method_rms": 1.83, "facing_rms": 2.0, "highlight_rms": 1.99}
+    (build / "sweep" / "tessellation.json").write_text(json.dumps(
+        {"orders": {"sphere": {t: orders for t in ("phong", "gouraud", "flat")}}}
+    ))  # fmt: skip
     row = {"scene": "sphere", "size": "160×120", "pixels": 9000, "spans": 500, "cycles": 9075,
            "fps": 22000.0, "mismatches": 0, "max_lsb": 0.5, "bound_lsb": 0.55}  # fmt: skip
     (build / "results.json").write_text(json.dumps(
-        {"fps": 30, "clock_hz": 200e6, "cycles_available": 6_666_666, "rows": [row]}
+        {"schema": 1, "fps": 30, "clock_hz": 200e6, "cycles_available": 6_666_666, "rows": [row]}
     ))  # fmt: skip
     case = {"case": "a case", "extreme": "much", "expected": "well", "pixels": 5, "max_lsb": 0.5,
             "bound_lsb": 0.6, "mismatches": 0, "zero_normals": 1, "failures": [],
@@ -87,7 +92,7 @@ def build(tmp_path_factory):
     ]  # fmt: skip
     (build / "stability").mkdir()
     (build / "stability" / "report.json").write_text(json.dumps({
-        "rows": [case, bad], "errors": errors, "amm_2012_at_20": 0.00141,
+        "schema": 2, "rows": [case, bad], "errors": errors, "amm_2012_at_20": 0.00141,
         "powers": [{"n": 20, "codes": 4, "max_error": 1e-5, "at_versine": 0, "bound": 2e-5}],
     }))  # fmt: skip
     return build
@@ -120,6 +125,7 @@ def test_the_numbers_are_those_of_the_runs(html, build):
         )
         assert f"0 of {found['pixels']:,} pixels".replace(",", " ") in html
     assert "201 MHz" in html and "make other" in html and "it broke" in html
+    assert "1.83, 2.00, 1.99" in html and "the frame is one-sided" in html
     assert "&lt;b&gt;bad&lt;/b&gt;" in html and "<b>bad</b>" not in html
 
 
@@ -135,23 +141,41 @@ def test_the_pareto_front():
 
 
 def test_a_broken_file_is_named(build, tmp_path, capsys, monkeypatch):
-    (tmp_path / "results.json").write_text("{")
     monkeypatch.setattr(report, "run_missing", lambda *_: None)
-    assert report.main(tmp_path) == 2
-    assert capsys.readouterr().err.startswith(f"Error: {tmp_path / 'results.json'}: not JSON")
-    assert not (tmp_path / "report").exists()
+    (tmp_path / "stability").mkdir()
+    (tmp_path / "sweep").mkdir()
+    for name, text, said in (
+        ("results.json", "{", "not JSON"),
+        ("stability/report.json", '{"schema": 1, "rows": []}', "another version wrote it"),
+        ("sweep/precision.csv", "method,label\na,b\n", "no column `cycles`"),
+    ):
+        (tmp_path / name).write_text(text)
+        assert report.main(tmp_path) == 2
+        lines = capsys.readouterr().err.splitlines()
+        assert len(lines) == 1 and lines[0].startswith(f"Error: {tmp_path / name}: {said}")
+        assert not (tmp_path / "report").exists()
+        (tmp_path / name).unlink()
+
+
+def test_the_page_is_one_file(build, capsys, monkeypatch):
+    monkeypatch.setattr(report, "run_missing", lambda *_: None)
+    assert report.main(build) == 0
+    assert [p.name for p in (build / "report").iterdir()] == ["index.html"]
+    assert "report/index.html: " in capsys.readouterr().out
 
 
 def test_scenes_without_a_current_result_are_run(build, monkeypatch, capsys):
     ran = []
-    monkeypatch.setattr(report.run_scene, "main", lambda argv: ran.append(argv[0]) or 0)
-    report.run_missing(list(SCENES), build, run_scene.Steps())
-    assert not ran
-    report.run_missing([*SCENES, "cone"], build, run_scene.Steps())
-    assert ran == ["--scene=cone"]
+    monkeypatch.setattr(report.run_scene, "main", lambda argv: ran.append(" ".join(argv[:2])) or 0)
+    report.run_missing(list(SCENES), build)
+    others = [f"--scene=pyramid --technique={t}" for t in ("gouraud", "flat")]
+    assert ran == others  # the sphere is there in all three
     monkeypatch.setattr(report, "newest_source", lambda: 4e9)
-    report.run_missing(list(SCENES), build, run_scene.Steps())
-    assert ran[1:] == ["--scene=pyramid", "--scene=sphere"]
+    report.run_missing(["sphere"], build)
+    assert ran[2:] == [f"--scene=sphere --technique={t}" for t in ("phong", "gouraud", "flat")]
+    monkeypatch.setattr(report.run_scene, "main", lambda argv: 2)
+    with pytest.raises(InputError, match="make run SCENE=sphere TECHNIQUE=phong failed"):
+        report.run_missing(["sphere"], build)
 
 
 # -- in Chromium -----------------------------------------------------------------------------------
@@ -380,7 +404,7 @@ def test_nothing_is_without_a_name(visit, html):
 @browser
 def test_a_page_without_any_result(visit, tmp_path):
     page = visit(report.page(tmp_path, tmp_path))
-    assert page.locator(".missing:visible").count() == 7
+    assert page.locator(".missing:visible").count() == 8
 
 
 def test_every_bundled_scene_has_a_place(monkeypatch, tmp_path):

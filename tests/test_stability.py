@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from model import stability, twin, visibility
+from model import reference, stability, twin, visibility
 from model.config import DEFAULT as C
 from model.spans import illegal_spans
 from sim import stability as table
@@ -36,6 +36,11 @@ def test_cases_are_legal_and_the_same_at_every_call():
         assert np.array_equal(frame.spans, again.spans)
         assert not illegal_spans(frame, C).any()
         assert (frame.spans["x"] + frame.spans["length"]).max() <= frame.width <= C.max_size
+
+
+def test_model_and_reference_agree_on_zero_vectors():
+    counts = [(twin.zero_normals(f), reference.zero_normals(f)) for f in stability.frames()]
+    assert all(a == b for a, b in counts) and sum(a for a, _ in counts) > 800
 
 
 def test_shared_edges():

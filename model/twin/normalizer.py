@@ -14,7 +14,10 @@ from .inverse_sqrt_method import inverse_sqrt_method
 
 
 def leading_zeros(normal, config: Config):
-    """Stage 1: the shift that brings the largest of three components (int64[3, n]) to the top."""
+    """Stage 1: the shift that brings the largest of three components (int64[3, n]) to the top; or
+    the one that does so for all normals of the build."""
+    if config.constant_shift:
+        return np.full(normal.shape[1], config.constant_shift[0])
     sign = normal >> (config.normal.bits - 1)
     ones = (normal[0] ^ sign[0]) | (normal[1] ^ sign[1]) | (normal[2] ^ sign[2])
     return config.normal.bits - 1 - fixed.bit_length(ones)

@@ -16,6 +16,15 @@ from .specular_weight import constant_weight, specular_weight
 from .versine_of_parts import versine_of_parts
 
 
+def coefficients(column, constant, material, config: Config):
+    """Codes int64[channels, n] of the materials int[n], from a `column` of the table (int64[M, 3])
+    or from the `constant` of the build."""
+    if constant:
+        codes = np.array(constant)[: config.channels, None]
+        return np.repeat(codes, len(material), axis=1)
+    return np.stack([np.take(channel, material) for channel in column.T[: config.channels]])
+
+
 def intensity(ambient, diffuse, cosine, weight, power, lit, config: Config):
     """Stage: S per channel, int64[channels, n], all products whole; clamped to 1, cut to
     `intensity`."""
@@ -46,22 +55,28 @@ def shading_unit(unit, cosine, lit, material, frame, config: Config, trace: dict
     table = frame.materials
     power = weight = np.zeros_like(cosine)
     if config.specular:
+<<<<<<< HEAD
         if config.normal_method == "dot_first":
             v = versine_of_parts(unit[1], unit[0], config)
         else:
             v = reflection(unit, frame.half_vector, config, trace)
+=======
+        half_vector = config.constant_half_vector or frame.half_vector
+        v = reflection(unit, half_vector, config, trace)
+>>>>>>> main
         if config.power_function:
-            power = specular_power_method(v, table.exponent[material], config, trace)
+            n = config.constant_exponent or table.exponent[material]
+            power = specular_power_method(v, np.broadcast_to(n, v.shape), config, trace)
         else:
             power = specular_cosine(v, config, trace)
         if config.weight_function:
             weight = specular_weight(cosine, material, table.weight, config, trace)
         else:
-            weight = constant_weight(table.weight[material, 0], config)
-    ambient, diffuse = table.ambient, table.diffuse
+            left = config.constant_weight or table.weight[material, 0]
+            weight = constant_weight(np.broadcast_to(left, v.shape), config)
     s = intensity(
-        np.stack([np.take(column, material) for column in ambient.T[: config.channels]]),
-        np.stack([np.take(column, material) for column in diffuse.T[: config.channels]]),
+        coefficients(table.ambient, config.constant_ambient, material, config),
+        coefficients(table.diffuse, config.constant_diffuse, material, config),
         cosine, weight, power, lit, config,
     )  # fmt: skip
     colour = code(s, config)

@@ -19,7 +19,7 @@ FOLDER = build.BUILD / "formal"
 _HERE = Path(__file__).resolve().parent
 _BIN = Path(sys.executable).parent
 #: The datapath, which the proofs of the whole pipeline cut away: any colour comes out of it.
-_DATAPATH = "phong_pipeline/gen_phong.u_shading_unit"
+_DATAPATH = "phong_unit/u_shading_unit"
 
 
 class SetupError(Exception):
@@ -68,6 +68,9 @@ def _write(folder: Path, proof: Proof, twin: Twin | None, rtl: Path) -> list[str
             end = text.rindex("endmodule")
             text = text[:end] + (_HERE / f"{proof.top}.vh").read_text() + text[end:]
         (folder / source.name).write_text(text)
+    bench = _HERE / f"{proof.top}.v"
+    if bench.is_file():
+        shutil.copy(bench, folder)
     for source in (*rtl.glob("*.vh"), *build.generate_header().iterdir()):
         shutil.copy(source, folder)
     if proof.latency:
@@ -81,7 +84,7 @@ def _commands(proof: Proof, names: list[str], twin: Twin | None, rtl: Path) -> l
     """The Yosys script that reads the design."""
     defines = ["-D F_BROKEN"] if twin else []
     files = [n for n in names if n.endswith(".v")]
-    if proof.top != "phong_pipeline":
+    if proof.top != "phong_pipeline" and not (_HERE / f"{proof.top}.v").is_file():
         files = [f"{proof.top}.v"]
     chosen = "".join(f" -chparam {k} {v}" for k, v in proof.parameters.items())
     lines = [

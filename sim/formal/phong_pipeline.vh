@@ -3,11 +3,12 @@
 // time. That the parts do this is proven of them without a bound; this is about their wiring.
 
   localparam F_FIRST = `PHONG_PIXEL_LATENCY + 3;
+  localparam F_WORD = `PHONG_NORMAL_BITS;  // of a component in span_values
   localparam F_BITS = COORDINATE_BITS + 4;
   localparam F_PLACE_BITS = 2 * COORDINATE_BITS + 1;
-  localparam F_WIDE = NORMAL_BITS + COORDINATE_BITS + 2;
-  localparam signed [F_WIDE-1:0] F_MAX = (1 << (NORMAL_BITS - 1)) - 1;
-  localparam signed [F_WIDE-1:0] F_MIN = -(1 << (NORMAL_BITS - 1));
+  localparam F_WIDE = F_WORD + COORDINATE_BITS + 2;
+  localparam signed [F_WIDE-1:0] F_MAX = (1 << (F_WORD - 1)) - 1;
+  localparam signed [F_WIDE-1:0] F_MIN = -(1 << (F_WORD - 1));
 
   reg f_past = 1'b0;
   always @(posedge clk) f_past <= 1'b1;
@@ -49,10 +50,10 @@
   reg [COORDINATE_BITS:0] f_left;  // pixels of the span that have not gone in
   reg f_bad, f_flag;
   reg signed [F_WIDE-1:0] f_x, f_y, f_z;
-  reg signed [NORMAL_BITS-1:0] f_step_x, f_step_y, f_step_z;
+  reg signed [F_WORD-1:0] f_step_x, f_step_y, f_step_z;
   // the normal at the interpolators, and the flag PHONG_ZERO_NORMAL_LATENCY clocks later
-  wire f_zero = pixel_valid && f_x[NORMAL_BITS-1:0] == 0 && f_y[NORMAL_BITS-1:0] == 0 &&
-      f_z[NORMAL_BITS-1:0] == 0;
+  wire f_zero = pixel_valid && f_x[F_WORD-1:0] == 0 && f_y[F_WORD-1:0] == 0 &&
+      f_z[F_WORD-1:0] == 0;
   reg [`PHONG_ZERO_NORMAL_LATENCY-1:0] f_zeros;
   always @(posedge clk) f_zeros <= reset ? 0 : {f_zeros, f_zero};
   wire f_outside = f_x > F_MAX || f_x < F_MIN || f_y > F_MAX || f_y < F_MIN ||
@@ -63,12 +64,12 @@
     if (f_takes) begin
       f_left <= f_pixels;
       f_bad <= span_length == 0 || {2'b00, span_x} + span_length > 1 << COORDINATE_BITS;
-      f_x <= $signed(gen_phong.start_x);
-      f_y <= $signed(gen_phong.start_y);
-      f_z <= $signed(gen_phong.start_z);
-      f_step_x <= gen_phong.step_x;
-      f_step_y <= gen_phong.step_y;
-      f_step_z <= gen_phong.step_z;
+      f_x <= $signed(span_values[0*F_WORD+:F_WORD]);
+      f_y <= $signed(span_values[1*F_WORD+:F_WORD]);
+      f_z <= $signed(span_values[2*F_WORD+:F_WORD]);
+      f_step_x <= span_values[3*F_WORD+:F_WORD];
+      f_step_y <= span_values[4*F_WORD+:F_WORD];
+      f_step_z <= span_values[5*F_WORD+:F_WORD];
     end else if (pixel_valid) begin
       f_left <= f_left - 1'b1;
       f_x <= f_x + f_step_x;

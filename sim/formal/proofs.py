@@ -24,7 +24,8 @@ class Twin:
 
 @dataclass(frozen=True)
 class Proof:
-    """A claim about module `top`, whose properties stand in sim/formal/<top>.vh.
+    """A claim about module `top`, whose properties stand in sim/formal/<top>.vh, or about several
+    modules side by side in sim/formal/<top>.v.
 
     mode: "prove" (k-induction, no bound), "bmc" (the first `depth` clocks), "cover" (reachable), or
     "structure" (of the flattened netlist: `script` is Yosys's, and fails if the claim does).
@@ -80,7 +81,7 @@ _INTERPOLATOR_TWINS = (
 )  # fmt: skip
 _PIPELINE = "spans in, their pixels out, in order, after a constant time, at full rate; flags"
 _PIPELINE_TWINS = (
-    Twin("phong_pipeline", "overflow = overflow_x | overflow_y | overflow_z;",
+    Twin("phong_unit", "overflow = overflow_x | overflow_y | overflow_z;",
          "overflow = overflow_x | overflow_y;", "a_illegal"),
     Twin("normalizer", "& ~sign_p3 &", "&", "a_zero"),
     Twin("phong_pipeline", ".out_ready(m_axis_tready),", ".out_ready(1'b1),", "a_stable"),
@@ -140,5 +141,30 @@ PROOFS = (
     Proof(
         "back to back, real", "the same, with the real latency", "phong_pipeline", "cover", 90,
         "real latency", fast=False,
+    ),
+    Proof(
+        "constant product", "constant_multiplier = word times constant, signed and unsigned",
+        "equal_constant_product", "bmc", 5, "12 bits, constant 3277 (7 digits)",
+        {"BITS": 12, "CONSTANT_BITS": 12, "CONSTANT": 3277},
+        twins=(Twin("constant_multiplier", "if (MINUS[place(FIRST)] == MINUS[place(SECOND)])",
+                    "if (MINUS[place(FIRST)] != MINUS[place(SECOND)])", "a_unsigned", 5),),
+    ),
+    Proof(
+        "pruned fifo", "one channel and narrow places = the full FIFO, given such pixels",
+        "equal_pixel_fifo", "bmc", 14, "latency 3, 14 clocks from reset",
+        twins=(Twin("pixel_fifo", "{{IDLE_X_BITS{1'b0}},", "{{IDLE_X_BITS{1'b1}},", "a_pixel",
+                    14),),
+    ),
+    Proof(
+        "pruned registers", "constant registers = written ones, or a word is flagged",
+        "equal_register_map", "prove", 3, "real widths, any writes",
+        twins=(Twin("register_map", "write_half_z & (table_word[HALF_BITS-1:0] != half_z)",
+                    "1'b0", "a_z"),),
+    ),
+    Proof(
+        "pruned channel", "no specular term = a specular term of 0, a clock later",
+        "equal_colour_channel", "bmc", 18, "words of 4 to 9 bits, 18 clocks",
+        twins=(Twin("colour_channel", "sum <= ambient_term + diffuse_term;",
+                    "sum <= ambient_term | diffuse_term;", "a_colour", 18),),
     ),
 )  # fmt: skip

@@ -73,6 +73,18 @@ async def narrow_multiplier(dut, name):
 
 
 @cocotb.test()
+@cocotb.parametrize(name=_of("constant_multiplier"))
+async def constant_multiplier(dut, name):
+    """All short words, corners of long ones."""
+    p = INSTANCES[name].parameters
+    bits = p["BITS"]
+    short = np.arange(1 << bits)
+    a = short if bits < 10 else _corners(np.random.default_rng(SEED), bits, 2000)
+    x = _signed(a, bits) if p["IS_SIGNED"] else a
+    await PrimitivesTB(dut).check(name, (a,), {"product": x * p["CONSTANT"]}, NOTE)
+
+
+@cocotb.test()
 @cocotb.parametrize(name=_of("leading_zeros"))
 async def leading_zeros(dut, name):
     """Every place of the highest one with random bits below, no one at all, all short words."""
@@ -202,6 +214,7 @@ async def register_map(dut):
         "write_exponent": to_field & (index == FIELDS["exponent"]),
         "table_address": address,
         "table_word": word,
+        "unsupported": np.zeros(len(address), np.int64),
     }
     for table in ("ambient", "diffuse"):
         channels = [to_field & (index == FIELDS[table] + c) for c in range(3)]

@@ -1,0 +1,223 @@
+// phong_unit: the paper's proposal, between the walker and the FIFO: three interpolators in parallel
+// for the normal, a normalizer, the shading function.
+// One pixel a clock; PHONG_PIXEL_LATENCY clocks from a pixel of the walker to its colour.
+// Wiring in data order.
+`default_nettype none
+`include "phong_config.vh"
+`include "latency.vh"
+
+module phong_unit #(
+    parameter NORMAL_METHOD    = `PHONG_NORMAL_METHOD,
+    parameter NORMAL_BITS      = `PHONG_NORMAL_BITS,
+    parameter COORDINATE_BITS  = `PHONG_COORDINATE_BITS,
+    parameter MATERIAL_BITS    = `PHONG_MATERIAL_BITS,
+    parameter COLOUR_BITS      = `PHONG_COLOUR_BITS,
+    parameter COEFFICIENT_BITS = `PHONG_COEFFICIENT_BITS,
+    parameter INDEX_BITS       = `PHONG_WEIGHT_INDEX_BITS,
+    parameter HALF_BITS        = `PHONG_HALF_VECTOR_BITS,
+    parameter UNIT_BITS        = `PHONG_UNIT_BITS,
+    parameter COSINE_BITS      = `PHONG_COSINE_BITS,
+    parameter INTERPOLATE_X    = `PHONG_INTERPOLATE_X,
+    parameter INTERPOLATE_Y    = `PHONG_INTERPOLATE_Y,
+    parameter INTERPOLATE_Z    = `PHONG_INTERPOLATE_Z,
+    parameter IDLE_STEP_BITS   = `PHONG_IDLE_STEP_BITS
+) (
+    input wire clk,
+    input wire reset,  // synchronous; of the flags only
+
+    // write port for registers and material table (see register_map); hold during a frame
+    input wire                                write_enable,
+    input wire [MATERIAL_BITS+INDEX_BITS:0] write_address,
+    input wire [      2*COEFFICIENT_BITS:0] write_word,
+
+    // a span, in the clock in which it is taken
+    input wire                       taken,
+    input wire [6*NORMAL_BITS-1:0] values,    // {step z, y, x, start z, y, x}, s1.30
+    input wire [COORDINATE_BITS:0] length,    // pixels
+    input wire [MATERIAL_BITS-1:0] material,
+
+    // its pixels
+    input wire                       load,         // this one is the last of its span
+    input wire                       advance,      // to the next one
+    input wire                       pixel_valid,
+    input wire [COORDINATE_BITS-1:0] pixel_x,
+    input wire [COORDINATE_BITS-1:0] pixel_y,
+    input wire [  MATERIAL_BITS-1:0] pixel_material,
+
+    output wire [COLOUR_BITS-1:0] red,  // codes
+    output wire [COLOUR_BITS-1:0] green,
+    output wire [COLOUR_BITS-1:0] blue,
+    output wire                   overflow,     // a component has left its word since load
+    output wire                   zero_normal,  // for one clock: a pixel's is the zero vector
+    output wire                   unsupported   // for one clock: this build leaves something out
+);
+
+  // ---- registers ----
+  wire [HALF_BITS-1:0] half_x, half_z;
+  wire two_sided;
+  wire write_weight, write_exponent;
+  wire [2:0] write_ambient, write_diffuse;
+  wire [MATERIAL_BITS+INDEX_BITS-1:0] table_address;
+  wire [2*COEFFICIENT_BITS:0] table_word;
+  wire unsupported_write, unsupported_span;
+
+  register_map u_register_map (
+      .clk(clk),
+      .write_enable(write_enable),
+      .write_address(write_address),
+      .write_word(write_word),
+      .half_x(half_x),
+      .half_z(half_z),
+      .two_sided(two_sided),
+      .write_weight(write_weight),
+      .write_exponent(write_exponent),
+      .write_ambient(write_ambient),
+      .write_diffuse(write_diffuse),
+      .table_address(table_address),
+      .table_word(table_word),
+      .unsupported(unsupported_write)
+  );
+
+  assign unsupported = unsupported_write | unsupported_span;
+
+  // ---- spans: what none has in this build is constant from here on; the guard finds those ----
+  wire [NORMAL_BITS-1:0] start_x, start_y, start_z;
+  wire [NORMAL_BITS-1:0] step_x, step_y, step_z;
+  wire [NORMAL_BITS-1:0] normal_x, normal_y, normal_z;
+  wire overflow_x, overflow_y, overflow_z;
+
+  assign {step_z, step_y, step_x, start_z, start_y, start_x} = values;
+  assign overflow = overflow_x | overflow_y | overflow_z;
+
+  wire [NORMAL_BITS-1:0] slope_x =
+      INTERPOLATE_X ? $signed(step_x << IDLE_STEP_BITS) >>> IDLE_STEP_BITS : 0;
+  wire [NORMAL_BITS-1:0] slope_y =
+      INTERPOLATE_Y ? $signed(step_y << IDLE_STEP_BITS) >>> IDLE_STEP_BITS : 0;
+  wire [NORMAL_BITS-1:0] slope_z =
+      INTERPOLATE_Z ? $signed(step_z << IDLE_STEP_BITS) >>> IDLE_STEP_BITS : 0;
+
+  span_guard u_span_guard (
+      .clk(clk),
+      .reset(reset),
+      .taken(taken),
+      .step_x(step_x),
+      .step_y(step_y),
+      .step_z(step_z),
+      .length(length),
+      .material(material),
+      .pixel_valid(pixel_valid),
+      .at_end(load),
+      .pixel_x(pixel_x),
+      .pixel_y(pixel_y),
+      .normal_x(normal_x),
+      .normal_y(normal_y),
+      .normal_z(normal_z),
+      .unsupported(unsupported_span)
+  );
+
+  // ---- three interpolators in parallel ----
+  normal_interpolator u_interpolator_x (
+      .clk(clk),
+      .load(load),
+      .advance(advance),
+      .start(start_x),
+      .step(slope_x),
+      .value(normal_x),
+      .overflow(overflow_x)
+  );
+
+  normal_interpolator u_interpolator_y (
+      .clk(clk),
+      .load(load),
+      .advance(advance),
+      .start(start_y),
+      .step(slope_y),
+      .value(normal_y),
+      .overflow(overflow_y)
+  );
+
+  normal_interpolator u_interpolator_z (
+      .clk(clk),
+      .load(load),
+      .advance(advance),
+      .start(start_z),
+      .step(slope_z),
+      .value(normal_z),
+      .overflow(overflow_z)
+  );
+
+  // ---- unit normal ----
+  wire [UNIT_BITS-1:0] unit_x, unit_y, unit_z;
+  wire [COSINE_BITS-1:0] cosine;
+  wire lit;
+  wire [MATERIAL_BITS-1:0] shaded_material;
+
+  generate
+    if (NORMAL_METHOD == `PHONG_NORMAL_METHOD_NONE) begin : gen_unnormalized
+      unnormalized u_unnormalized (
+          .clk(clk),
+          .two_sided(two_sided),
+          .x(normal_x),
+          .y(normal_y),
+          .z(normal_z),
+          .unit_x(unit_x),
+          .unit_y(unit_y),
+          .unit_z(unit_z),
+          .cosine(cosine),
+          .lit(lit)
+      );
+
+      assign zero_normal = 1'b0;  // nobody divides by its length
+    end else begin : gen_normalized
+      normalizer u_normalizer (
+          .clk(clk),
+          .reset(reset),
+          .two_sided(two_sided),
+          .valid(pixel_valid),
+          .x(normal_x),
+          .y(normal_y),
+          .z(normal_z),
+          .unit_x(unit_x),
+          .unit_y(unit_y),
+          .unit_z(unit_z),
+          .cosine(cosine),
+          .lit(lit),
+          .zero_normal(zero_normal)
+      );
+    end
+  endgenerate
+
+  delay #(
+      .BITS  (MATERIAL_BITS),
+      .CYCLES(`PHONG_NORMAL_LATENCY)
+  ) u_material (
+      .clk(clk),
+      .in (pixel_material),
+      .out(shaded_material)
+  );
+
+  // ---- colour ----
+  shading_unit u_shading_unit (
+      .clk(clk),
+      .half_x(half_x),
+      .half_z(half_z),
+      .write_weight(write_weight),
+      .write_exponent(write_exponent),
+      .write_ambient(write_ambient),
+      .write_diffuse(write_diffuse),
+      .write_address(table_address),
+      .write_word(table_word),
+      .unit_x(unit_x),
+      .unit_y(unit_y),
+      .unit_z(unit_z),
+      .cosine(cosine),
+      .lit(lit),
+      .material(shaded_material),
+      .red(red),
+      .green(green),
+      .blue(blue)
+  );
+
+endmodule
+
+`default_nettype wire
