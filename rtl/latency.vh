@@ -83,20 +83,11 @@
   ( `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_NONE ? `PHONG_UNNORMALIZED_LATENCY : \
     `PHONG_NORMALIZER_LATENCY )
 
-<<<<<<< HEAD
 `define PHONG_ACROSS_LATENCY \
-  ( `PHONG_MULTIPLIER_LATENCY        /* products with h */ \
-  + 2                                /* fetch, subtract */ \
-=======
-`define PHONG_REFLECTION_LATENCY \
   ( (`PHONG_CONSTANT_HALF_VECTOR ? `PHONG_CONSTANT_HALF_VECTOR_LEVELS \
                                  : `PHONG_MULTIPLIER_LATENCY + 1) \
-                                     /* across: products with h, fetch */ \
-  + 1                                /* across: subtract */ \
-  + `PHONG_ROUND_SATURATE_LATENCY \
-  + `PHONG_MULTIPLIER_LATENCY        /* versine: squares */ \
-  + 2                                /* versine: fetch, sum */ \
->>>>>>> main
+                                     /* products with h, fetch */ \
+  + 1                                /* subtract */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
 `define PHONG_VERSINE_OF_PARTS_LATENCY \

@@ -98,105 +98,10 @@ module phong_pipeline #(
           .material(span_material),
           .load(load),
           .advance(advance),
-<<<<<<< HEAD
-          .start(start_x),
-          .step(step_x),
-          .value(normal_x),
-          .overflow(overflow_x)
-      );
-
-      normal_interpolator u_interpolator_y (
-          .clk(clk),
-          .load(load),
-          .advance(advance),
-          .start(start_y),
-          .step(step_y),
-          .value(normal_y),
-          .overflow(overflow_y)
-      );
-
-      normal_interpolator u_interpolator_z (
-          .clk(clk),
-          .load(load),
-          .advance(advance),
-          .start(start_z),
-          .step(step_z),
-          .value(normal_z),
-          .overflow(overflow_z)
-      );
-
-      // ---- unit normal ----
-      wire [UNIT_BITS-1:0] unit_x, unit_y, unit_z;
-      wire [COSINE_BITS-1:0] cosine;
-      wire lit;
-      wire [MATERIAL_BITS-1:0] material;
-
-      if (NORMAL_METHOD == `PHONG_NORMAL_METHOD_NONE) begin : gen_unnormalized
-        unnormalized u_unnormalized (
-            .clk(clk),
-            .two_sided(two_sided),
-            .x(normal_x),
-            .y(normal_y),
-            .z(normal_z),
-            .unit_x(unit_x),
-            .unit_y(unit_y),
-            .unit_z(unit_z),
-            .cosine(cosine),
-            .lit(lit)
-        );
-        assign zero_normal = 1'b0;  // nobody divides by its length
-      end else begin : gen_normalized
-        normalizer u_normalizer (
-            .clk(clk),
-            .reset(reset),
-            .two_sided(two_sided),
-            .valid(pixel_valid),
-            .half_x(half_x),
-            .half_z(half_z),
-            .x(normal_x),
-            .y(normal_y),
-            .z(normal_z),
-            .unit_x(unit_x),
-            .unit_y(unit_y),
-            .unit_z(unit_z),
-            .cosine(cosine),
-            .lit(lit),
-            .zero_normal(zero_normal)
-        );
-      end
-
-      delay #(
-          .BITS  (MATERIAL_BITS),
-          .CYCLES(`PHONG_NORMAL_LATENCY)
-      ) u_material (
-          .clk(clk),
-          .in (pixel_material),
-          .out(material)
-      );
-
-      // ---- colour ----
-      shading_unit u_shading_unit (
-          .clk(clk),
-          .half_x(half_x),
-          .half_z(half_z),
-          .write_weight(write_weight),
-          .write_exponent(write_exponent),
-          .write_ambient(write_ambient),
-          .write_diffuse(write_diffuse),
-          .write_address(table_address),
-          .write_word(table_word),
-          .unit_x(unit_x),
-          .unit_y(unit_y),
-          .unit_z(unit_z),
-          .cosine(cosine),
-          .lit(lit),
-          .material(material),
-=======
           .pixel_valid(pixel_valid),
           .pixel_x(pixel_x),
           .pixel_y(pixel_y),
           .pixel_material(pixel_material),
->>>>>>> main
           .red(red),
           .green(green),
           .blue(blue),

@@ -174,6 +174,8 @@ module phong_unit #(
           .reset(reset),
           .two_sided(two_sided),
           .valid(pixel_valid),
+          .half_x(half_x),
+          .half_z(half_z),
           .x(normal_x),
           .y(normal_y),
           .z(normal_z),

@@ -45,7 +45,8 @@ def shade(normal, material, frame: Frame, config: Config = DEFAULT, trace: dict 
     if config.normal_method == "none":
         unit, cosine, lit = unnormalized(normal, frame.two_sided, config, trace)
     else:
-        unit, cosine, lit = normalizer(normal, frame.two_sided, config, trace, frame.half_vector)
+        half_vector = config.constant_half_vector or frame.half_vector
+        unit, cosine, lit = normalizer(normal, frame.two_sided, config, trace, half_vector)
     return shading_unit(unit, cosine, lit, material, frame, config, trace)
 
 

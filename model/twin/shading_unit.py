@@ -55,15 +55,11 @@ def shading_unit(unit, cosine, lit, material, frame, config: Config, trace: dict
     table = frame.materials
     power = weight = np.zeros_like(cosine)
     if config.specular:
-<<<<<<< HEAD
         if config.normal_method == "dot_first":
             v = versine_of_parts(unit[1], unit[0], config)
         else:
-            v = reflection(unit, frame.half_vector, config, trace)
-=======
-        half_vector = config.constant_half_vector or frame.half_vector
-        v = reflection(unit, half_vector, config, trace)
->>>>>>> main
+            half_vector = config.constant_half_vector or frame.half_vector
+            v = reflection(unit, half_vector, config, trace)
         if config.power_function:
             n = config.constant_exponent or table.exponent[material]
             power = specular_power_method(v, np.broadcast_to(n, v.shape), config, trace)
