@@ -187,7 +187,7 @@ class Config:
     constant_diffuse: tuple = constants("red", "green", "blue")
 
     # -- other methods for the same job, the first the default (see model/sweep.py) ----------------
-    normal_method: str = choice("normalize", "none")  # none: shade the interpolated vector itself
+    normal_method: str = choice("normalize", "dot_first", "none")  # none: as interpolated
     root_method: str = choice("lines", "quadratic", "table", "magic")  # of 1/sqrt
     root_newton_steps: int = 0  # after table or magic: steps of Newton's iteration
     quadratic_index_bits: int = 4  # parabolas in each of [1, 2) and [2, 4)

@@ -134,14 +134,18 @@ def cosine(config: Config) -> float:
 def across(half_vector, config: Config) -> tuple[float, float]:
     """Error of w: (relative, absolute) parts.
 
-    Relative: length of the unit normal, and |h|. Absolute: the direction (the map N -> w has norm
-    |h|), the rounded components of N (one of them may be clamped at 1 by a whole LSB), and the
-    rounding of the two components of w.
+    Relative: length of the unit normal, and |h|. Absolute, by `dot_first`: the direction, the parts
+    of a mantissa (1/2 or longer) rounded with one bit less, and rounded again once scaled. Else:
+    the direction (the map N -> w has norm |h|), the rounded components of N (one of them may be
+    clamped at 1 by a whole LSB), and the rounding of the two components of w.
     """
     h = config.half_vector.real(half_vector)
     norm = float(np.hypot(*h))
     hx, hz = np.abs(h)
     half = _round(config.unit)
+    if config.normal_method == "dot_first":
+        parts = np.sqrt(2) * (config.mantissa.lsb / 0.5 + half)
+        return length(config) + abs(norm - 1), float(norm * direction(config) + parts)
     components = half * max(np.hypot(2 * hz, hx + hz), np.hypot(hz, hx + hz + max(hx, hz)))
     absolute = norm * direction(config) + components + np.sqrt(2) * half
     return length(config) + abs(norm - 1), float(absolute)
@@ -258,7 +262,7 @@ def derived(config: Config, n: float) -> bool:
     power_method = config.power_method == "tables" or (
         config.power_method == "squaring" and n == int(n)
     )
-    return config.normal_method == "normalize" and power_method
+    return config.normal_method in ("normalize", "dot_first") and power_method
 
 
 def bound_lsb(frame: Frame, config: Config = DEFAULT) -> float | None:

@@ -177,6 +177,11 @@ def points() -> list[Point]:
         Point(_root(f"power_tables_{1 << k}", **_powers(k, k)), "power: tables", f"2 x {1 << k}")
         for k in range(3, DEFAULT.log_index_bits)
     ]
+    out += [
+        Point(of_width(w, f"dot_first_{w}", normal_method="dot_first"), "dot, then scale",
+              f"{w} bits")
+        for w in range(12, MULTIPLIER_BITS + 1, 2)
+    ]  # fmt: skip
     for power_method, method in (("squaring", "power: squaring"), ("schlick", "power: Schlick")):
         out += [
             Point(of_width(w, f"{power_method}_{w}", power_method=power_method), method,

@@ -84,15 +84,24 @@
   + (`PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_NONE ? `PHONG_UNNORMALIZED_LATENCY : \
     `PHONG_NORMALIZER_LATENCY) )
 
-`define PHONG_REFLECTION_LATENCY \
+`define PHONG_ACROSS_LATENCY \
   ( (`PHONG_CONSTANT_HALF_VECTOR ? `PHONG_CONSTANT_HALF_VECTOR_LEVELS \
                                  : `PHONG_MULTIPLIER_LATENCY + 1) \
-                                     /* across: products with h, fetch */ \
-  + 1                                /* across: subtract */ \
-  + `PHONG_ROUND_SATURATE_LATENCY \
-  + `PHONG_MULTIPLIER_LATENCY        /* versine: squares */ \
-  + 2                                /* versine: fetch, sum */ \
+                                     /* products with h, fetch */ \
+  + 1                                /* subtract */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
+
+`define PHONG_VERSINE_OF_PARTS_LATENCY \
+  ( `PHONG_MULTIPLIER_LATENCY        /* squares */ \
+  + 2                                /* fetch, sum */ \
+  + `PHONG_ROUND_SATURATE_LATENCY )
+
+`define PHONG_REFLECTION_LATENCY (`PHONG_ACROSS_LATENCY + `PHONG_VERSINE_OF_PARTS_LATENCY)
+
+// From what the shading unit is given to 1 - cos(s).
+`define PHONG_HIGHLIGHT_LATENCY \
+  ( `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_DOT_FIRST ? `PHONG_VERSINE_OF_PARTS_LATENCY : \
+    `PHONG_REFLECTION_LATENCY )
 
 `define PHONG_LOG_LATENCY \
   ( (`PHONG_LOG_OCTAVES ? `PHONG_LEADING_ZEROS_LATENCY + `PHONG_LEFT_SHIFTER_LATENCY : 0) \
@@ -186,7 +195,7 @@
 
 // From the unit normal to the products of eq. (3).
 `define PHONG_SPECULAR_LATENCY \
-  ( `PHONG_SPECULAR ? `PHONG_REFLECTION_LATENCY + `PHONG_POWER_LATENCY \
+  ( `PHONG_SPECULAR ? `PHONG_HIGHLIGHT_LATENCY + `PHONG_POWER_LATENCY \
                     : `PHONG_SMALL_RAM_LATENCY )
 
 `define PHONG_SHADING_UNIT_LATENCY \

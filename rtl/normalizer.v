@@ -8,6 +8,9 @@
 `include "latency.vh"
 
 module normalizer #(
+    parameter METHOD            = `PHONG_NORMAL_METHOD,  // dot_first: dot products, then scale
+    parameter HALF_BITS         = `PHONG_HALF_VECTOR_BITS,
+    parameter HALF_FRACTION     = `PHONG_HALF_VECTOR_FRACTION,
     parameter NORMAL_BITS       = `PHONG_NORMAL_BITS,
     parameter MANTISSA_BITS     = `PHONG_MANTISSA_BITS,
     parameter MANTISSA_FRACTION = `PHONG_MANTISSA_FRACTION,
@@ -29,11 +32,13 @@ module normalizer #(
     input  wire                   reset,      // synchronous; of zero_normal alone
     input  wire                   two_sided,  // 1: shade |Zn|
     input  wire                   valid,      // the normal is that of a pixel; for zero_normal
+    input  wire [  HALF_BITS-1:0] half_x,     // s0.17, held for a frame; for dot_first
+    input  wire [  HALF_BITS-1:0] half_z,
     input  wire [NORMAL_BITS-1:0] x,          // s1.30, normal, light frame
     input  wire [NORMAL_BITS-1:0] y,
     input  wire [NORMAL_BITS-1:0] z,
-    output wire [  UNIT_BITS-1:0] unit_x,     // s0.17, unit normal
-    output wire [  UNIT_BITS-1:0] unit_y,
+    output wire [  UNIT_BITS-1:0] unit_x,     // s0.17, unit normal; dot_first: its q across h
+    output wire [  UNIT_BITS-1:0] unit_y,     // dot_first: its p across h (see across)
     output wire [  UNIT_BITS-1:0] unit_z,
     output wire [COSINE_BITS-1:0] cosine,     // u0.18, |Zn| = cos(i)
     output wire                   lit,        // Zn > 0 (two-sided: Zn not 0), exact
@@ -115,6 +120,65 @@ module normalizer #(
     end
   endgenerate
 
+  // ---- what is scaled: the components, or the parts across h and z ----
+  // |m| may be up to sqrt(3), so those parts have one fraction bit less.
+  localparam ROOT_WAIT = `PHONG_MULTIPLIER_LATENCY + 2 + 1 + `PHONG_INVERSE_SQRT_METHOD_LATENCY;
+  localparam DOT_FIRST = METHOD == `PHONG_NORMAL_METHOD_DOT_FIRST;
+  localparam LESS = DOT_FIRST ? 1 : 0;
+
+  wire [3*MANTISSA_BITS-1:0] mantissas_p7;
+  wire [3*MANTISSA_BITS-1:0] scaled_in;
+
+  generate
+    if (DOT_FIRST) begin : gen_across
+      wire [2*MANTISSA_BITS-1:0] parts;  // {p, q}
+
+      across #(
+          .VECTOR_BITS(MANTISSA_BITS),
+          .OUT_BITS   (MANTISSA_BITS),
+          .DROP       (HALF_FRACTION + LESS)
+      ) u_across (
+          .clk(clk),
+          .half_x(half_x),
+          .half_z(half_z),
+          .x(mantissas_p7[MANTISSA_BITS-1:0]),
+          .y(mantissas_p7[MANTISSA_BITS+:MANTISSA_BITS]),
+          .z(mantissas_p7[2*MANTISSA_BITS+:MANTISSA_BITS]),
+          .p(parts[MANTISSA_BITS+:MANTISSA_BITS]),
+          .q(parts[MANTISSA_BITS-1:0])
+      );
+
+      delay #(
+          .BITS  (2 * MANTISSA_BITS),
+          .CYCLES(ROOT_WAIT - `PHONG_ACROSS_LATENCY)
+      ) u_parts (
+          .clk(clk),
+          .in (parts),
+          .out(scaled_in[2*MANTISSA_BITS-1:0])
+      );
+
+      delay #(
+          .BITS  (MANTISSA_BITS),
+          .CYCLES(ROOT_WAIT)
+      ) u_z (
+          .clk(clk),
+          .in (mantissas_p7[2*MANTISSA_BITS+:MANTISSA_BITS]),
+          .out(scaled_in[2*MANTISSA_BITS+:MANTISSA_BITS])
+      );
+    end else begin : gen_components
+      delay #(
+          .BITS  (3 * MANTISSA_BITS),
+          .CYCLES(ROOT_WAIT)
+      ) u_wait (
+          .clk(clk),
+          .in (mantissas_p7),
+          .out(scaled_in)
+      );
+
+      wire unused = &{1'b0, half_x, half_z};
+    end
+  endgenerate
+
   // ---- align, sum_of_squares, scale, round: the same for the three components ----
   localparam X = 0, Y = 1, Z = 2;
 
@@ -124,8 +188,6 @@ module normalizer #(
   wire [UNIT_BITS-1:0] unit[X:Z];
   wire [PRODUCT_BITS:0] product[X:Z];
   wire [PRODUCT_BITS-1:0] scaled_z;
-
-  localparam ROOT_WAIT = `PHONG_MULTIPLIER_LATENCY + 2 + 1 + `PHONG_INVERSE_SQRT_METHOD_LATENCY;
 
   wire [3*NORMAL_BITS-1:0] xyz = {z, y, x};
 
@@ -169,6 +231,8 @@ module normalizer #(
           .out(mantissa_p7)
       );
 
+      assign mantissas_p7[c*MANTISSA_BITS+:MANTISSA_BITS] = mantissa_p7;
+
       multiplier #(
           .A_BITS(MANTISSA_BITS),
           .B_BITS(MANTISSA_BITS)
@@ -180,18 +244,8 @@ module normalizer #(
       );
 
       if (SPECULAR || c == Z) begin : gen_scale
-        wire [ MANTISSA_BITS-1:0] mantissa;
-        wire [  PRODUCT_BITS-1:0] scaled;
-        reg  [    PRODUCT_BITS:0] doubled;
-
-        delay #(
-            .BITS  (MANTISSA_BITS),
-            .CYCLES(ROOT_WAIT)
-        ) u_wait (
-            .clk(clk),
-            .in (mantissa_p7),
-            .out(mantissa)
-        );
+        wire [PRODUCT_BITS-1:0] scaled;
+        reg  [  PRODUCT_BITS:0] doubled;
 
         multiplier #(
             .A_BITS  (MANTISSA_BITS),
@@ -199,7 +253,7 @@ module normalizer #(
             .B_SIGNED(0)
         ) u_scale (
             .clk(clk),
-            .a(mantissa),
+            .a(scaled_in[c*MANTISSA_BITS+:MANTISSA_BITS]),
             .b(root),
             .product(scaled)
         );
@@ -219,7 +273,7 @@ module normalizer #(
       if (SPECULAR) begin : gen_unit
         round_saturate #(
             .IN_BITS (PRODUCT_BITS + 1),
-            .DROP    (PRODUCT_FRACTION - UNIT_FRACTION),
+            .DROP    (PRODUCT_FRACTION - UNIT_FRACTION - (c == Z ? 0 : LESS)),
             .OUT_BITS(UNIT_BITS)
         ) u_unit (
             .clk(clk),

@@ -208,6 +208,8 @@ module phong_unit #(
           .reset(reset),
           .two_sided(two_sided),
           .valid(held_valid),
+          .half_x(half_x),
+          .half_z(half_z),
           .x(held_x),
           .y(held_y),
           .z(held_z),

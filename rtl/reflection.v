@@ -11,14 +11,8 @@
 
 module reflection #(
     parameter UNIT_BITS        = `PHONG_UNIT_BITS,
-    parameter UNIT_FRACTION    = `PHONG_UNIT_FRACTION,
     parameter HALF_BITS        = `PHONG_HALF_VECTOR_BITS,
-    parameter HALF_FRACTION    = `PHONG_HALF_VECTOR_FRACTION,
     parameter VERSINE_BITS     = `PHONG_VERSINE_BITS,
-    parameter VERSINE_FRACTION = `PHONG_VERSINE_FRACTION,
-    parameter CONSTANT         = `PHONG_CONSTANT_HALF_VECTOR,    // 1: h is a constant
-    parameter HALF_X           = `PHONG_CONSTANT_HALF_VECTOR_X,
-    parameter HALF_Z           = `PHONG_CONSTANT_HALF_VECTOR_Z,  // 0 or more
     parameter LATENCY          = `PHONG_REFLECTION_LATENCY
 ) (
     input  wire                    clk,
@@ -30,170 +24,24 @@ module reflection #(
     output wire [VERSINE_BITS-1:0] versine  // u0.22, 1 - cos(s); all ones where cos(s) <= 0
 );
 
-  localparam PRODUCT_BITS = HALF_BITS + UNIT_BITS;
-  localparam SUM_BITS = 2 * UNIT_BITS;
-
-  // ---- across: the parts of the normal across h ----
-  wire [PRODUCT_BITS-1:0] zy_p3, zx_p3, xz_p3;
-  reg [PRODUCT_BITS-1:0] across_y_p4;
-  reg [PRODUCT_BITS:0] across_x_p4;
-
-  generate
-    if (CONSTANT) begin : gen_constant
-      localparam LEVELS = `PHONG_CONSTANT_HALF_VECTOR_LEVELS;
-
-      constant_multiplier #(
-          .BITS(UNIT_BITS),
-          .CONSTANT(HALF_Z),
-          .CONSTANT_BITS(HALF_BITS),
-          .LATENCY(LEVELS)
-      ) u_half_z_unit_y (
-          .clk(clk),
-          .word(unit_y),
-          .product(zy_p3)
-      );
-
-      constant_multiplier #(
-          .BITS(UNIT_BITS),
-          .CONSTANT(HALF_Z),
-          .CONSTANT_BITS(HALF_BITS),
-          .LATENCY(LEVELS)
-      ) u_half_z_unit_x (
-          .clk(clk),
-          .word(unit_x),
-          .product(zx_p3)
-      );
-
-      constant_multiplier #(
-          .BITS(UNIT_BITS),
-          .CONSTANT(HALF_X < 0 ? -HALF_X : HALF_X),
-          .CONSTANT_BITS(HALF_BITS),
-          .LATENCY(LEVELS)
-      ) u_half_x_unit_z (
-          .clk(clk),
-          .word(unit_z),
-          .product(xz_p3)
-      );
-    end else begin : gen_variable
-      wire [PRODUCT_BITS-1:0] zy_p2, zx_p2, xz_p2;
-      reg [PRODUCT_BITS-1:0] zy, zx, xz;
-
-      multiplier #(
-          .A_BITS(HALF_BITS),
-          .B_BITS(UNIT_BITS)
-      ) u_half_z_unit_y (
-          .clk(clk),
-          .a(half_z),
-          .b(unit_y),
-          .product(zy_p2)
-      );
-
-      multiplier #(
-          .A_BITS(HALF_BITS),
-          .B_BITS(UNIT_BITS)
-      ) u_half_z_unit_x (
-          .clk(clk),
-          .a(half_z),
-          .b(unit_x),
-          .product(zx_p2)
-      );
-
-      multiplier #(
-          .A_BITS(HALF_BITS),
-          .B_BITS(UNIT_BITS)
-      ) u_half_x_unit_z (
-          .clk(clk),
-          .a(half_x),
-          .b(unit_z),
-          .product(xz_p2)
-      );
-
-      // Products far apart on the chip meet in one long addition, so they are fetched first.
-      always @(posedge clk) begin
-        zy <= zy_p2;
-        zx <= zx_p2;
-        xz <= xz_p2;
-      end
-
-      assign {zy_p3, zx_p3, xz_p3} = {zy, zx, xz};
-    end
-
-    if (CONSTANT && HALF_X < 0) begin : gen_add
-      always @(posedge clk) begin
-        across_x_p4 <= {zx_p3[PRODUCT_BITS-1], zx_p3} + {xz_p3[PRODUCT_BITS-1], xz_p3};
-      end
-    end else begin : gen_subtract
-      always @(posedge clk) begin
-        across_x_p4 <= {zx_p3[PRODUCT_BITS-1], zx_p3} - {xz_p3[PRODUCT_BITS-1], xz_p3};
-      end
-    end
-  endgenerate
-
-  always @(posedge clk) across_y_p4 <= zy_p3;
-
   wire [UNIT_BITS-1:0] p_p6, q_p6;
 
-  round_saturate #(
-      .IN_BITS (PRODUCT_BITS),
-      .DROP    (HALF_FRACTION),
-      .OUT_BITS(UNIT_BITS)
-  ) u_p (
+  across u_across (
       .clk(clk),
-      .in (across_y_p4),
-      .out(p_p6)
+      .half_x(half_x),
+      .half_z(half_z),
+      .x(unit_x),
+      .y(unit_y),
+      .z(unit_z),
+      .p(p_p6),
+      .q(q_p6)
   );
 
-  round_saturate #(
-      .IN_BITS (PRODUCT_BITS + 1),
-      .DROP    (HALF_FRACTION),
-      .OUT_BITS(UNIT_BITS)
-  ) u_q (
+  versine_of_parts u_versine (
       .clk(clk),
-      .in (across_x_p4),
-      .out(q_p6)
-  );
-
-  // ---- versine: twice the sum of their squares ----
-  wire [SUM_BITS-1:0] pp_p8, qq_p8;
-
-  multiplier #(
-      .A_BITS(UNIT_BITS),
-      .B_BITS(UNIT_BITS)
-  ) u_pp (
-      .clk(clk),
-      .a(p_p6),
-      .b(p_p6),
-      .product(pp_p8)
-  );
-
-  multiplier #(
-      .A_BITS(UNIT_BITS),
-      .B_BITS(UNIT_BITS)
-  ) u_qq (
-      .clk(clk),
-      .a(q_p6),
-      .b(q_p6),
-      .product(qq_p8)
-  );
-
-  reg [SUM_BITS-1:0] pp_p9, qq_p9;
-  reg [SUM_BITS-1:0] sum_p10;
-
-  always @(posedge clk) begin
-    pp_p9 <= pp_p8;
-    qq_p9 <= qq_p8;
-    sum_p10 <= pp_p9 + qq_p9;
-  end
-
-  round_saturate #(
-      .IN_BITS  (SUM_BITS),
-      .DROP     (2 * UNIT_FRACTION - 1 - VERSINE_FRACTION),
-      .OUT_BITS (VERSINE_BITS),
-      .IS_SIGNED(0)
-  ) u_versine (
-      .clk(clk),
-      .in (sum_p10),
-      .out(versine)
+      .p(p_p6),
+      .q(q_p6),
+      .versine(versine)
   );
 
 endmodule

@@ -7,6 +7,7 @@
 `include "latency.vh"
 
 module shading_unit #(
+    parameter NORMAL_METHOD        = `PHONG_NORMAL_METHOD,
     parameter UNIT_BITS            = `PHONG_UNIT_BITS,
     parameter COSINE_BITS          = `PHONG_COSINE_BITS,
     parameter HALF_BITS            = `PHONG_HALF_VECTOR_BITS,
@@ -55,7 +56,7 @@ module shading_unit #(
 
   // Clocks from the input to where a thing is needed.
   localparam POWER_AT = `PHONG_SPECULAR_LATENCY;
-  localparam EXPONENT_AT = `PHONG_REFLECTION_LATENCY + `PHONG_EXPONENT_LATENCY;
+  localparam EXPONENT_AT = `PHONG_HIGHLIGHT_LATENCY + `PHONG_EXPONENT_LATENCY;
   localparam WEIGHT_AT = POWER_AT - `PHONG_SPECULAR_WEIGHT_LATENCY;
 
   // Clocks from the input to where the material is looked up, in this order.
@@ -139,15 +140,26 @@ module shading_unit #(
       wire [POWER_BITS-1:0] power;
       wire [WEIGHT_BITS-1:0] weight;
 
-      reflection u_reflection (
-          .clk(clk),
-          .half_x(half_x),
-          .half_z(half_z),
-          .unit_x(unit_x),
-          .unit_y(unit_y),
-          .unit_z(unit_z),
-          .versine(versine)
-      );
+      if (NORMAL_METHOD == `PHONG_NORMAL_METHOD_DOT_FIRST) begin : gen_versine
+        versine_of_parts u_versine (
+            .clk(clk),
+            .p(unit_y),
+            .q(unit_x),
+            .versine(versine)
+        );
+
+        wire unused = &{1'b0, half_x, half_z, unit_z};
+      end else begin : gen_reflection
+        reflection u_reflection (
+            .clk(clk),
+            .half_x(half_x),
+            .half_z(half_z),
+            .unit_x(unit_x),
+            .unit_y(unit_y),
+            .unit_z(unit_z),
+            .versine(versine)
+        );
+      end
 
       if (POWER_FUNCTION) begin : gen_power
         wire [EXPONENT_BITS-1:0] exponent;

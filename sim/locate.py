@@ -34,7 +34,7 @@ def _vectors(frame: Frame, pixel: int, config: Config):
         intensity_code(value, config, trace)
         yield "intensity_code", [value], trace
         return
-    unit, cosine, lit = normalizer(normal, frame.two_sided, config, trace)
+    unit, cosine, lit = normalizer(normal, frame.two_sided, config, trace, frame.half_vector)
     yield "normalizer", list(normal), trace
     material = frame.spans["material"][span].astype(np.int64)
     trace = {}

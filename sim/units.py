@@ -246,11 +246,10 @@ MODULES = {
             ("write_diffuse", 3), *_TABLE_PORTS,
         ),
         children=(
-            Child("gen_specular.u_reflection", "reflection", "0"),
+            Child("gen_specular.gen_reflection.u_reflection", "reflection", "0"),
             Child(
                 "gen_specular.gen_power.u_specular_power.gen_tables.u_specular_power",
-                "specular_power",
-                L.format("REFLECTION"),
+                "specular_power", L.format("REFLECTION"),
             ),
             Child(
                 "gen_specular.gen_weight.u_specular_weight", "specular_weight",

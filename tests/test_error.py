@@ -21,6 +21,7 @@ from model.twin.power_squaring import power_squaring
 from model.twin.reflection import reflection
 from model.twin.specular_power import specular_power
 from model.twin.specular_weight import specular_weight
+from model.twin.versine_of_parts import versine_of_parts
 
 RNG = np.random.default_rng(75)
 ANGLES = (0.0, 0.3, 1.0, np.pi / 2, 2.5, 3.1, np.pi)
@@ -144,6 +145,25 @@ def test_versine_within_its_bound(angle):
     inside = v_true < 1 - 1e-4
     error = np.abs(v - v_true)[inside]
     assert (error <= budget.versine(v_true[inside], frame.half_vector, C)).all()
+
+
+@pytest.mark.parametrize("bits", [12, 18])
+@pytest.mark.parametrize("angle", ANGLES)
+def test_versine_of_dot_products_within_its_bound(angle, bits):
+    config = CONFIGS[f"dot_first_{bits}"]
+    eye = np.array([np.sin(angle), 0, np.cos(angle)])
+    half = half_vector_codes(eye, config)
+    normal = normals_near(half, 100, 200_000) >> (C.normal.bits - config.normal.bits)
+    normal = normal[:, np.abs(normal).max(axis=0) > 0]
+    unit, cosine, _ = normalizer(normal, False, config, half_vector=half)
+    v = config.versine.real(versine_of_parts(unit[1], unit[0], config))
+    true = normal / np.linalg.norm(normal.astype(float), axis=0)
+    eye = reference.eye_of(half)
+    v_true = 1 - (2 * true[2] * (eye @ true) - eye[2])
+    inside = v_true < 1 - 2.0 ** (2 - bits)
+    error = np.abs(v - v_true)[inside]
+    assert (error <= budget.versine(v_true[inside], half, config)).all()
+    assert np.abs(config.cosine.real(cosine) - np.abs(true[2])).max() <= budget.cosine(config)
 
 
 @pytest.mark.parametrize("n", [1, 1.5, 2, 10, 20, 32, 64, 127.5, 128])

@@ -19,7 +19,7 @@ from sim.units import bench_source
 from tests.test_modules import run
 
 SMALL = (("model/data/highlights.toml", (72, 24), ""), ("model/data/facets.toml", (96, 16), ""))
-SLICE = ("width_12", "parabolas_8", "table_8_newton", "squaring_14")
+SLICE = ("width_12", "parabolas_8", "table_8_newton", "squaring_14", "dot_first_16")
 
 
 def test_there_are_forty_different_configurations():

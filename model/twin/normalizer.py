@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import fixed
 from ..config import Config
+from .across import across_mantissa
 from .inverse_sqrt_method import inverse_sqrt_method
 
 
@@ -62,7 +63,10 @@ def round_unit(product, config: Config):
         cosine = np.where(z < 0, config.cosine.max, cosine)
     if not config.specular:
         return np.zeros_like(product), cosine
-    unit = fixed.saturate(fixed.round_shift(product, fraction - config.unit.fraction), config.unit)
+    # Parts across h have one fraction bit less (see `across`).
+    less = np.array([[1], [1], [0]]) if config.normal_method == "dot_first" else 0
+    drop = fraction - config.unit.fraction - less
+    unit = fixed.saturate((product + (1 << (drop - 1))) >> drop, config.unit)
     return unit, cosine
 
 
@@ -76,9 +80,13 @@ def zero(normal):
     return (normal == 0).all(axis=0)
 
 
-def normalizer(normal, two_sided: bool, config: Config, trace: dict | None = None):
+def normalizer(
+    normal, two_sided: bool, config: Config, trace: dict | None = None, half_vector=(0, 0)
+):
     """Unit normal, |cos(i)| and whether they are lit, of interpolated normals.
 
+    By the method `dot_first` the parts q and p across `half_vector` take the places of x and y:
+    dot products first, then the scale.
     normal: int64[3, n] in `normal`. Returns unit int64[3, n] in `unit`, |Zn| int64[n] in
     `cosine`, which keeps one more bit, and lit bool[n]. The zero vector gives zeros, not lit.
     """
@@ -87,7 +95,11 @@ def normalizer(normal, two_sided: bool, config: Config, trace: dict | None = Non
     square = sum_of_squares(mantissa)
     operand, below_one = root_operand(square, config)
     root = inverse_sqrt_method(operand, config, trace)
-    product = scale(mantissa, root, below_one)
+    scaled = mantissa
+    if config.normal_method == "dot_first":
+        p, q = across_mantissa(mantissa, half_vector, config)
+        scaled = np.stack([q, p, mantissa[2]])
+    product = scale(scaled, root, below_one)
     unit, cosine = round_unit(product, config)
     if trace is not None:
         trace["normalizer.leading_zeros"] = (shift,)

@@ -17,8 +17,6 @@ from .shading_unit import shading_unit
 from .span_walker import span_walker
 from .unnormalized import unnormalized
 
-NORMAL_METHODS = {"normalize": normalizer, "none": unnormalized}
-
 #: Pixels worked on at a time: the temporaries of one block fit the cache.
 BLOCK = 1 << 14
 
@@ -44,7 +42,11 @@ def interpolate(spans, span, k, config: Config):
 
 def shade(normal, material, frame: Frame, config: Config = DEFAULT, trace: dict | None = None):
     """Codes int64[3, n] of interpolated normals (int64[3, n] in `normal`) and their materials."""
-    unit, cosine, lit = NORMAL_METHODS[config.normal_method](normal, frame.two_sided, config, trace)
+    if config.normal_method == "none":
+        unit, cosine, lit = unnormalized(normal, frame.two_sided, config, trace)
+    else:
+        half_vector = config.constant_half_vector or frame.half_vector
+        unit, cosine, lit = normalizer(normal, frame.two_sided, config, trace, half_vector)
     return shading_unit(unit, cosine, lit, material, frame, config, trace)
 
 

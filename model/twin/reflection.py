@@ -13,32 +13,15 @@ but with its square root. (Lyon 1993 uses |R - u|**2 / 2 in the same spirit, wit
 
 from __future__ import annotations
 
-import numpy as np
-
-from .. import fixed
 from ..config import Config
-
-
-def across(unit, half_vector, config: Config):
-    """Stage 1: the two parts of the normal across h: hz*Yn and hz*Xn - hx*Zn, in `unit`."""
-    hx, hz = half_vector
-    x, y, z = unit
-    drop = config.half_vector.fraction
-    p = fixed.saturate(fixed.round_shift(hz * y, drop), config.unit)
-    q = fixed.saturate(fixed.round_shift(hz * x - hx * z, drop), config.unit)
-    return p, q
-
-
-def versine(p, q, config: Config):
-    """Stage 2: 2 (p**2 + q**2) in `versine`, rounded; saturated where cos(s) <= 0."""
-    drop = 2 * config.unit.fraction - 1 - config.versine.fraction
-    return np.minimum(fixed.round_shift(p * p + q * q, drop), config.versine.max)
+from .across import across_unit
+from .versine_of_parts import versine_of_parts
 
 
 def reflection(unit, half_vector, config: Config, trace: dict | None = None):
     """1 - cos(s) of unit normals (int64[3, n] in `unit`), int64[n] in `versine`."""
-    p, q = across(unit, half_vector, config)
-    v = versine(p, q, config)
+    p, q = across_unit(unit, half_vector, config)
+    v = versine_of_parts(p, q, config)
     if trace is not None:
         trace["reflection.across"] = (p, q)
         trace["reflection.versine"] = (v,)

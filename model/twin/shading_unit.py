@@ -13,6 +13,7 @@ from .reflection import reflection
 from .specular_cosine import specular_cosine
 from .specular_power_method import specular_power_method
 from .specular_weight import constant_weight, specular_weight
+from .versine_of_parts import versine_of_parts
 
 
 def coefficients(column, constant, material, config: Config):
@@ -48,14 +49,17 @@ def code(s, config: Config):
 def shading_unit(unit, cosine, lit, material, frame, config: Config, trace: dict | None = None):
     """Codes of red, green, blue, int64[3, n].
 
-    unit: int64[3, n] in `unit`; cosine: Zn in `cosine`; lit: bool[n]; material: int[n];
-    frame: model.frame.Frame (registers and material table).
+    unit: int64[3, n] in `unit`, as `normalizer` gives it; cosine: Zn in `cosine`; lit: bool[n];
+    material: int[n]; frame: model.frame.Frame (registers and material table).
     """
     table = frame.materials
     power = weight = np.zeros_like(cosine)
     if config.specular:
-        half_vector = config.constant_half_vector or frame.half_vector
-        v = reflection(unit, half_vector, config, trace)
+        if config.normal_method == "dot_first":
+            v = versine_of_parts(unit[1], unit[0], config)
+        else:
+            half_vector = config.constant_half_vector or frame.half_vector
+            v = reflection(unit, half_vector, config, trace)
         if config.power_function:
             n = config.constant_exponent or table.exponent[material]
             power = specular_power_method(v, np.broadcast_to(n, v.shape), config, trace)
