@@ -7,7 +7,7 @@ exact = model.reference.render(front.frame)    # 255 * S in float64
 """
 
 from . import reference, twin
-from .config import DEFAULT, Config, Format
+from .config import DEFAULT, TECHNIQUES, Config, Format
 from .frame import SPAN_DTYPE, ExactFrame, Frame, InputError, MaterialTable
 from .scene import Scene, bundled_scenes, load_scene
 from .scene_to_spans import FrontEnd, front_end
@@ -17,6 +17,7 @@ from .twin import Pixels, render
 __all__ = [
     "DEFAULT",
     "SPAN_DTYPE",
+    "TECHNIQUES",
     "Config",
     "ExactFrame",
     "Format",

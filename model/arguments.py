@@ -79,7 +79,7 @@ def profile(name: str, level: int, technique: str, size=tessellation.SIZE):
         row = slice(line * size[0], (line + 1) * size[0])
         x = np.flatnonzero(true.covered[row])
         return x, true.value[row][x, 1]
-    _, picture, _ = tessellation.shaded(SURFACES[name], level, technique, size)
+    _, picture = tessellation.shaded(SURFACES[name], level, technique, size)
     here = picture.dot // size[0] == line
     order = np.argsort(picture.dot[here])
     return (picture.dot[here] % size[0])[order], picture.value[here][order, 1]

@@ -179,6 +179,7 @@ class Config:
     idle_material_bits: int = 0  # top bits of material, x and y that are 0
     idle_x_bits: int = 0
     idle_y_bits: int = 0
+    hold_unlit: bool = False  # pixels turned away from the light toggle nothing (never pruned)
     constant_half_vector: tuple = constants("x", "z")  # hz 0 or more
     constant_exponent: tuple = constants("n")  # of all materials
     constant_weight: tuple = constants("w")

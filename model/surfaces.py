@@ -89,13 +89,12 @@ class Torus:
         companion = np.zeros((len(a), 4, 4))
         companion[:, 1:, :3] = np.eye(3)
         companion[:, 0] = -quartic[:, 1:]
-        companion[:, 1:, 3] = 0.0
         roots = np.linalg.eigvals(companion)
         real = np.abs(roots.imag) < 1e-6
         t = np.max(np.where(real, roots.real, -np.inf), axis=1)
         hit = np.isfinite(t)
         t = np.where(hit, t, 0.0)
-        for _ in range(2):
+        for _ in range(2):  # polished, but where the ray only just touches
             value, slope = _polynomial(quartic, t), _polynomial(quartic * [4, 3, 2, 1, 0], t, 4)
             t = t - np.where(np.abs(slope) > 1e-6, value / np.where(slope == 0, 1, slope), 0.0)
         return hit, self.normal(origin + t[:, None] * back)

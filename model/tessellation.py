@@ -7,15 +7,15 @@ what is compared are the dots that both cover.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
 from . import reference, scene_to_spans, visibility
 from .camera import Camera, light_frame, view_axes
-from .config import DEFAULT, TECHNIQUES, Config
-from .frame import ExactFrame, Frame
+from .config import DEFAULT, TECHNIQUES
+from .frame import Frame
 from .mesh import Mesh, apply_matrix, normalize
 from .scene import Material, Scene, SceneObject
 from .scene_to_spans import front_end
@@ -51,14 +51,15 @@ def scene_of(surface: Surface, mesh: Mesh, size=SIZE, material: Material = MATER
     )
 
 
-def shade(normal, scene: Scene, exact: ExactFrame) -> np.ndarray:
+def shade(normal, scene: Scene, material: Material) -> np.ndarray:
     """255 S by eq. (3) in float64 for normals in the scene's axes, float64[n, 3]."""
     axes, eye = light_frame(scene.light, scene.camera.axes[2])
-    cp, d = exact.cp[0], exact.d[0]
+    cp, d = np.array(material.color), material.d
+    weight = material.weight(np.linspace(0, 1, DEFAULT.weight_points))
     ones = np.ones((len(normal), 1))
     return reference.shade(
         apply_matrix(axes, normal), ones * (cp * d), ones * (cp * (1 - d)),
-        ones * exact.weight[0], ones[:, 0] * exact.exponent[0], eye, False,
+        ones * weight, ones[:, 0] * material.n, eye, False,
     )  # fmt: skip
 
 
@@ -80,17 +81,14 @@ def truth(name: str, size=SIZE, material: Material = MATERIAL) -> Truth:
     """The picture of the surface `name` itself."""
     surface = SURFACES[name]
     scene = scene_of(surface, surface.mesh(4), size, material)
-    exact = front_end(scene).exact
     right, up, back = scene.camera.axes
     step = scene.camera.height / size[1]
     y, x = np.divmod(np.arange(size[0] * size[1]), size[0])
     origin = scene.camera.target + (x + 0.5 - size[0] / 2)[:, None] * step * right
     origin = origin - (y + 0.5 - size[1] / 2)[:, None] * step * up
     covered, normal = surface.see(origin, back)
-    dull = ExactFrame(
-        exact.start, exact.step, exact.eye, exact.cp, exact.d, 0 * exact.weight, exact.exponent
-    )
-    value = shade(normal, scene, exact)
+    dull = replace(material, weight_values=(0.0, 0.0))
+    value = shade(normal, scene, material)
     specular = (value - shade(normal, scene, dull))[:, 0]
     highlight = covered & (specular > 0.5 * np.max(specular, where=covered, initial=0))
     return Truth(size[0], covered, value, normal @ back, highlight)
@@ -105,13 +103,13 @@ class Picture:
 
 
 def shaded(surface: Surface, level: int, technique: str, size=SIZE, material=MATERIAL):
-    """Frame (for the hardware) and Picture of the mesh with `level` steps, and its Scene."""
+    """Frame (for the hardware) and Picture of the mesh with `level` steps."""
     scene = scene_of(surface, surface.mesh(level), size, material)
     config = TECHNIQUES[technique]
     made = front_end(scene, config)
     pixels = render(made.frame, config)
     value = reference.render_exact(made.frame, made.exact, config)
-    return made.frame, Picture(pixels.y * size[0] + pixels.x, value), scene
+    return made.frame, Picture(pixels.y * size[0] + pixels.x, value)
 
 
 def cubic(surface: Surface, level: int, size=SIZE, material=MATERIAL) -> Picture:
@@ -124,17 +122,18 @@ def cubic(surface: Surface, level: int, size=SIZE, material=MATERIAL) -> Picture
     """
     mesh = surface.mesh(level)
     scene = scene_of(surface, mesh, size, material)
-    exact = front_end(scene).exact
     right, up, back = scene.camera.axes
     pixel = scene.camera.height / size[1]
     normal = mesh.normals
-    corners = [shade(normal.reshape(-1, 3), scene, exact)]
+    corners = [shade(normal.reshape(-1, 3), scene, material)]
     for across, sign in ((right, 1.0), (up, -1.0)):
         slope = (normal @ across) / np.maximum(normal @ back, 0.1)
         tangent = sign * pixel * (across - slope[..., None] * back)
         tangent -= np.sum(tangent * normal, axis=-1, keepdims=True) * normal
         change = 1e-3 * surface.turn(mesh, tangent)
-        ahead, behind = (shade((normal + s * change).reshape(-1, 3), scene, exact) for s in (1, -1))
+        ahead, behind = (
+            shade((normal + s * change).reshape(-1, 3), scene, material) for s in (1, -1)
+        )
         corners.append((ahead - behind) / 2e-3)
     value = np.concatenate(corners, axis=-1).reshape(-1, 3, 9)
     screen = scene.camera.project(mesh.vertices[mesh.faces], *size)
@@ -214,6 +213,6 @@ def order(levels, values, last: int = 4) -> float:
     return float(-slope)
 
 
-def as_picture(frame: Frame, pixels, config: Config = DEFAULT) -> Picture:
+def as_picture(frame: Frame, pixels) -> Picture:
     """The Picture of codes that came out of the pipeline (`Pixels`)."""
     return Picture(pixels.y * frame.width + pixels.x, pixels.rgb.astype(np.float64))

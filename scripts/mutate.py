@@ -36,6 +36,7 @@ from scripts.lint import CONFIGS
 from sim import build
 from sim.benches import module_bench
 from sim.build import ROOT, RTL, Bench, BuildError
+from sim.units import MODULES
 
 EXPLAINED = ROOT / "scripts" / "equivalent_mutants.txt"
 FOLDER = ROOT / "build" / "mutants"
@@ -47,27 +48,23 @@ MUTANT_SECONDS = 150
 
 #: Benches that could notice a change of a file, the cheapest first.
 _OLDER = ("gouraud", "flat")
-_UNITS = ("inverse_sqrt", "normalizer", "reflection", "specular_power", "specular_cosine",
-          "specular_weight")  # fmt: skip
 BENCHES = {
     **{name: ("primitives",) for name in (
         "multiplier", "constant_multiplier", "narrow_multiplier", "leading_zeros", "left_shifter",
         "round_saturate", "delay", "rom", "ram", "small_ram",
     )},
-    **{name: (name,) for name in (*_UNITS, "shading_unit")},
+    **{name: (name,) for name in MODULES},
     "normal_interpolator": ("primitives", "phong_pipeline"),
     "register_map": ("primitives", "phong_pipeline"),
     "colour_channel": ("primitives", "shading_unit"),
     "span_walker": ("control", "phong_pipeline"),
     "pixel_fifo": ("control", "phong_pipeline"),
     "phong_pipeline": ("phong_pipeline", *_OLDER),
+    "phong_unit": ("phong_pipeline",),
     "intensity_code": ("intensity_code", "gouraud"),
     "gouraud_unit": ("gouraud",),
     "flat_unit": ("flat",),
-    "latency": (
-        "primitives", *_UNITS, "shading_unit", "intensity_code", "control", "phong_pipeline",
-        *_OLDER,
-    ),
+    "latency": ("primitives", *MODULES, "control", "phong_pipeline", *_OLDER),
 }  # fmt: skip
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/|\"[^\"\n]*\"", re.DOTALL)
@@ -81,7 +78,7 @@ _BINARY = {
     "||": ("&&",), "*": "+",
 }  # fmt: skip
 _UNARY = {"~": (" ",), "!": (" ",), "&": "|", "|": "&", "-": (" ",)}
-_ASSIGNMENT = re.compile(r"([a-z_]\w*(?:\[[^\]]*\])?|\{[^{}]*\}) <=(?=[ \n])")
+_ASSIGNMENT = re.compile(r"(?<!\w)([a-z_]\w*(?:\[[^\]]*\])?|\{[^{}]*\}) <=(?=[ \n])")
 _NUMBER = re.compile(r"(?<![\w`.'])(\d+)?(?:'([sS]?[bdohBDOH])([0-9a-fA-F_]+))?(?![\w'])")
 
 

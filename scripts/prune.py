@@ -87,12 +87,22 @@ def simulated(frame: Frame, config: Config) -> tuple[twin.Pixels, float]:
     return results[0].pixels, max(r.cycles / r.simulate_s for r in results)
 
 
+def resources(config: Config, seeds: int, steps: Steps) -> tuple[dict, float | None]:
+    """Cells of `config` by kind, and its clock in MHz, the median of `seeds`; None for none."""
+    if seeds:
+        report = synthesis.run(config, 6, tuple(range(1, seeds + 1)), step=steps.step)
+        return report["resources"], report["fmax_mhz"]["median"]
+    folder = BUILD / "synth" / config.name
+    folder.mkdir(parents=True, exist_ok=True)
+    with steps.step("synthesis"):
+        return synthesis.synthesize(config, folder)["resources"], None
+
+
 def measure(case: Case, seeds: int, steps: Steps) -> dict:
     """The figures of `case`, each with that of the full design behind it."""
     found, both = {}, (("pruned", case.config, case.frame), ("full", DEFAULT, case.full))
     for key, config, frame in both:
-        report = synthesis.run(config, 6, tuple(range(1, seeds + 1)), step=steps.step)
-        used = report["resources"]
+        used, clock = resources(config, seeds, steps)
         pixels, speed = simulated(frame, config)
         if key == "pruned" or case.same:
             want = twin.render(frame, DEFAULT if case.same else config)
@@ -100,9 +110,10 @@ def measure(case: Case, seeds: int, steps: Steps) -> dict:
             if wrong:
                 raise SimulationError(f"{case.name}: {wrong} pixels differ from the model's")
         found[key] = {
-            "dsp": used["dsp"], "lut_sites": used["lut_sites"], "ff": used["ff"],
-            "ebr": used["ebr"], "latency": latencies(config)["pixel"] + 3,
-            "clock_mhz": report["fmax_mhz"]["median"],
+            "dsp": used["dsp"],
+            "lut_sites": used["lut"] + 2 * used["carry"] + 4 * used["lut_ram"],
+            "ff": used["ff"], "ebr": used["ebr"], "latency": latencies(config)["pixel"] + 3,
+            "clock_mhz": clock,
             "simulation_clocks_per_s": round(speed),
             "toggles_per_pixel": round(toggles_per_pixel(frame, config, BUILD / "activity")[1], 1),
         }  # fmt: skip
@@ -114,6 +125,9 @@ def row(found: dict) -> str:
     cells = []
     for key, value in found["pruned"].items():
         full = found["full"][key]
+        if value is None:
+            cells.append("-")
+            continue
         percent = f"{100 * value / full:.0f} %" if full else "-"
         shown = f"{value:.0f}" if value < 1e5 else f"{value / 1e6:.2f} M/s"
         cells.append(f"{shown} ({percent})")
@@ -172,12 +186,12 @@ def main(argv=None) -> int:
     parser = _Parser(prog="prune", description=__doc__.partition("\n")[0])
     parser.add_argument("--scene", default="teapot", help="bundled scene, scene file, mesh, or all")
     parser.add_argument("--size", default="", help="WIDTHxHEIGHT; default: the scene's own")
-    parser.add_argument("--seeds", default="", help="placements to try for the clock, with all")
+    parser.add_argument("--seeds", default="", help="with all: placements to try, 0 for no clock")
     try:
         given = parser.parse_args(argv)
         seeds = given.seeds or "3"
-        if not (seeds.isascii() and seeds.isdigit() and 1 <= int(seeds) <= 100):
-            raise InputError(f"SEEDS is `{seeds}`, not a number from 1 to 100")
+        if not (seeds.isascii() and seeds.isdigit() and int(seeds) <= 100):
+            raise InputError(f"SEEDS is `{seeds}`, not a number from 0 to 100")
         size = parse_size(given.size, DEFAULT) if given.size else None
         if given.scene == "all":
             return measure_all(int(seeds))

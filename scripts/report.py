@@ -213,14 +213,14 @@ def _axis(title: str, log: bool = False) -> dict:
     return {"title": {"text": title}, "type": "log" if log else "linear"}
 
 
-def _level(text: str, y: float | None) -> dict:
-    """A dashed line across a plot with a logarithmic axis, and what it is."""
+def _level(text: str, y: float | None, log: bool = False) -> dict:
+    """A dashed line across a plot, whose axis may be logarithmic, and what it is."""
     if y is None:
         return {}
     line = {"type": "line", "xref": "paper", "x0": 0, "x1": 1, "y0": y, "y1": y,
             "line": {"color": "#d3552b", "dash": "dash"}, "layer": "below"}  # fmt: skip
-    note = {"xref": "paper", "x": 0, "y": float(np.log10(y)), "text": text, "showarrow": False,
-            "yanchor": "bottom", "xanchor": "left"}  # fmt: skip
+    note = {"xref": "paper", "x": 0, "y": float(np.log10(y)) if log else y, "text": text,
+            "showarrow": False, "yanchor": "bottom", "xanchor": "left"}  # fmt: skip
     return {"shapes": [line], "annotations": [note]}
 
 
@@ -246,7 +246,7 @@ def budget_plot(results: dict, scenes: list[str]) -> dict:
         )  # fmt: skip
     limit = f"budget: {results['fps']:g} frames/s at {results['clock_hz'] / 1e6:g} MHz"
     return figure(
-        traces, barmode="group", yaxis=_axis("cycles a frame", True),
+        traces, barmode="group", yaxis=_axis("cycles a frame"),
         **_level(limit, results["cycles_available"]),
     )  # fmt: skip
 
@@ -316,7 +316,7 @@ def precision_plots(rows: list[dict]) -> dict[str, dict]:
                     )  # fmt: skip
             plots[f"{cost}/{error}"] = figure(
                 traces, xaxis=_axis(cost_title, True), yaxis=_axis(error_title, True),
-                hovermode="closest", **_level("perfect rounding", PERFECT.get(error)),
+                hovermode="closest", **_level("perfect rounding", PERFECT.get(error), log=True),
             )  # fmt: skip
     return plots
 
@@ -418,6 +418,58 @@ def load_orders(build: Path) -> dict:
     return (load(build / "sweep" / "tessellation.json") or {}).get("orders", {})
 
 
+@dataclass
+class Argument:
+    """One of the paper's arguments for interpolating normals: its picture (a data URI, or empty),
+    and rows of figures, (what, one figure a technique)."""
+
+    name: str
+    about: str
+    picture: str
+    rows: list[tuple[str, list[str]]]
+
+
+def paper_arguments(sweep: Path) -> list[Argument]:
+    """What the study of the paper's arguments left in `sweep`; empty if it was not run."""
+    found = load(sweep / "arguments.json")
+    if not found:
+        return []
+    bands, flicker, turned = [], [], found["orientation"]
+    for shape, levels in found["mach_bands"].items():
+        for level, by in levels.items():
+            figures = [f"{n(by[t]['slope_rms'])}, {n(by[t]['intensity_rms'])}" for t in TECHNIQUES]
+            bands.append((f"{shape} of {level} steps", figures))
+    for shape, by in found["flicker"].items():
+        changes = [f"{n(by[t]['change_rms'])}, {by[t]['change_max']:.0f}" for t in TECHNIQUES]
+        flicker.append((f"{shape}: change a degree, LSB: RMS, largest", changes))
+        peaks = ["{} to {}".format(*by[t]["peak_range"]) for t in TECHNIQUES]
+        flicker.append((f"{shape}: brightest code of the highlight", peaks))
+    spread = [
+        (f"{kind}: largest spread over its orientations, LSB",
+         ["–", n(turned[kind]["largest_spread_lsb"]), "–"])
+        for kind in ("quadrilateral", "triangles")
+    ]  # fmt: skip
+    kinds = (
+        ("mach", "Mach bands", "Jumps across the edges that scan lines cross: of the slope of the "
+         "intensity (LSB a dot) and of the intensity (LSB), RMS. Flat faces have no slope.", bands),
+        ("flicker", "Flicker", "An object turns by a degree a frame about its own axis through 30 "
+         "frames; its picture should not change.", flicker),
+        ("orientation", "Orientation", "A black and white quadrilateral as it turns: its middle "
+         "changes with Gouraud's interpolation along scan lines; over triangles nothing does.",
+         spread),
+    )  # fmt: skip
+    return [
+        Argument(name, about, data_uri(path) if (path := sweep / f"{file}.png").is_file() else "",
+                 rows)
+        for file, name, about, rows in kinds
+    ]  # fmt: skip
+
+
+def n(value: float) -> str:
+    """A figure of the study: three digits, and 0 where only rounding is left."""
+    return "0" if abs(value) < 1e-9 else f"{value:.3g}"
+
+
 def page(build: Path = BUILD, record_folder: Path = records.FOLDER) -> str:
     """The page from what is below `build`. Raises InputError or OSError if a file is broken."""
     scenes = [s for name in bundled_scenes() if (s := scene_result(name, build))]
@@ -446,7 +498,9 @@ def page(build: Path = BUILD, record_folder: Path = records.FOLDER) -> str:
     return environment.get_template("report.html.j2").render(
         scenes=scenes, results=results, stability=stability, precision=precision,
         tessellation=tessellation, records=recorded(record_folder), costs=costs, errors=ERRORS,
-        shapes=shapes, sizes=SIZES, surface_errors=surface_errors, orders=load_orders(build),
+        shapes=shapes, sizes=SIZES, surface_errors=surface_errors,
+        arguments=paper_arguments(build / "sweep"), technique_names=[title(t) for t in TECHNIQUES],
+        orders=load_orders(build),
         title=title, plots=plots, plotly=get_plotlyjs(), commit=commit(),
     )  # fmt: skip
 

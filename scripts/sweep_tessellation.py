@@ -57,7 +57,7 @@ def measure(
             config = TECHNIQUES[technique]
             frames = []
             for level in levels:
-                frame, picture, _ = tessellation.shaded(surface, level, technique, size)
+                frame, picture = tessellation.shaded(surface, level, technique, size)
                 frames.append(frame)
                 pictures.append(picture)
             results = simulate_jobs([Job(frame) for frame in frames], config)

@@ -12,6 +12,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import cocotb_tools.config
@@ -198,17 +199,28 @@ class Bench(Verilator):
         units = sorted(self.folder.glob("Vtop*.cpp"))
         whole = self.folder / "whole.cpp"
         whole.write_text("".join(f'#include "{unit.name}"\n' for unit in units))
+        options = [
+            *self._cxx.split(), "-DVERILATOR=1", f"-DVM_TRACE={int(self._trace)}",
+            f"-DVM_COVERAGE={int(bool(self._coverage))}", f"-DVM_TRACE_VCD={int(self._trace)}",
+            f"-I{include}", f"-I{include / 'vltstd'}", f"-I{self.folder}",
+        ]  # fmt: skip
+
+        def compile(source: Path) -> Path:
+            target = self.folder / f"{source.stem}.{os.getpid()}.o"
+            run_tool(["g++", *options, "-c", source, "-o", target], cwd=self.folder)
+            return target
+
+        with ThreadPoolExecutor() as both:  # at once: it is as long as the slower of them
+            objects = list(both.map(compile, (whole, SIM / "main.cpp")))
         part = self.folder / f"{self._top}.{os.getpid()}"
         run_tool(
             [
-                "g++", *self._cxx.split(), "-DVERILATOR=1", f"-DVM_TRACE={int(self._trace)}",
-                f"-DVM_COVERAGE={int(bool(self._coverage))}",
-                f"-DVM_TRACE_VCD={int(self._trace)}", f"-I{include}", f"-I{include / 'vltstd'}",
-                f"-I{self.folder}", "-o", part, whole, SIM / "main.cpp", library,
-                f"-Wl,-rpath,{libs}", f"-L{libs}", "-lcocotbvpi_verilator", "-pthread",
-            ],
-            cwd=self.folder,
+                "g++", "-o", part, *objects, library, f"-Wl,-rpath,{libs}", f"-L{libs}",
+                "-lcocotbvpi_verilator", "-pthread",
+            ]
         )  # fmt: skip
+        for target in objects:
+            target.unlink()
         part.replace(self.folder / self._top)
         return self.folder
 

@@ -190,6 +190,18 @@ def test_a_pruned_run(start, scene, tmp_path):
     assert json.loads((tmp_path / "out/report.json").read_text())["config"]["name"] == "default"
 
 
+@pytest.mark.parametrize("technique", ["gouraud", "flat"])
+def test_the_older_techniques_can_be_pruned_to_grey(start, scene, tmp_path, technique):
+    grey = tmp_path / "grey.toml"
+    grey.write_text(SMALL + "material = { color = [0.5, 0.5, 0.5] }\n")
+    code, _, lines = start(f"--scene={grey}", f"--technique={technique}", "--prune=1")
+    assert (code, lines) == (0, [])
+    report = json.loads((tmp_path / "out/report.json").read_text())
+    assert (report["technique"], report["config"]["channels"]) == (technique, 1)
+    refused = start(f"--scene={scene}", f"--technique={technique}", f"--prune={grey}")
+    assert_refused(refused, "its spans have no place for this scene: channels: red, green and blue")
+
+
 # -- exit code 1 -----------------------------------------------------------------------------------
 
 

@@ -18,7 +18,9 @@ from model.scene import bundled_scenes, load_scene
 from model.scene_to_spans import front_end
 from model.spans import illegal_spans
 from model.twin.specular_power import specular_power
-from sim.build import Bench
+from scripts import prune, records
+from sim.build import ROOT, Bench
+from sim.elaborate import instances
 from sim.latency import latencies
 from sim.run_frame import Job, simulate_jobs
 from tests.modules.frames import random_frame
@@ -285,6 +287,14 @@ def test_each_feature_alone(feature):
     check(frame, without(feature, frame))
 
 
+@pytest.mark.parametrize("two_sided", [False, True])
+def test_holding_unlit_normals_changes_no_pixel(two_sided):
+    frame = plain()
+    frame.two_sided = two_sided
+    config = dataclasses.replace(C, name="hold", hold_unlit=True)
+    check(frame, config, [Job(frame, idle=100, stall=64, seed=SEED)])
+
+
 @pytest.mark.parametrize("scene", bundled_scenes())
 def test_bundled_scene(scene):
     frame = front_end(load_scene(scene, SIZE)).frame
@@ -431,3 +441,33 @@ def test_latency_falls():
     for scene in bundled_scenes():
         pruned, _ = pruning.prune(front_end(load_scene(scene, SIZE)).frame)
         assert latencies(pruned)["pixel"] < latencies(C)["pixel"], scene
+
+
+# -- the table -------------------------------------------------------------------------------------
+
+
+def test_the_readme_shows_the_last_measurement_of_these_builds():
+    """The table is that of the record, and the record is of the builds of today's analysis."""
+    record = records.load("prune")
+    assert prune.markdown(record["table"]) in (ROOT / "README.md").read_text()
+    today = {case.name: case for case in prune.cases()}
+    assert [found["name"] for found in record["table"]] == list(today)
+    for found in record["table"]:
+        config = today[found["name"]].config
+        assert found["digest"] == config.digest, f"{found['name']}: make prune SCENE=all"
+        assert found["pruned"]["latency"] == latencies(config)["pixel"] + 3
+
+
+def test_the_bars():
+    """DSP multipliers: 8 for diffuse colour, 6 for grey, none for the older techniques, and for
+    the teapot a quarter fewer than in the full design; measured, and as it is elaborated."""
+    rows = {found["name"]: found for found in records.load("prune")["table"]}
+    dsp = {name: found["pruned"]["dsp"] for name, found in rows.items()}
+    assert dsp["diffuse"] <= 8 and dsp["diffuse grey"] <= 6
+    assert dsp["gouraud"] == dsp["flat"] == 0
+    full = rows["teapot"]["full"]["dsp"]
+    assert dsp["teapot"] <= 0.75 * full
+    assert instances(pruning.BY_HAND["diffuse"])["multiplier"] <= 8
+    assert instances(pruning.BY_HAND["diffuse grey"])["multiplier"] <= 6
+    teapot = pruning.prune(front_end(load_scene("teapot", SIZE)).frame)[0]
+    assert instances(teapot)["multiplier"] <= 0.75 * instances(C)["multiplier"]

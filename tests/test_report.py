@@ -16,6 +16,7 @@ from model.frame import InputError
 from model.scene import bundled_scenes
 from scripts import report
 from scripts import run as run_scene
+from sim.build import ROOT
 
 RED, BLUE = (200, 30, 20), (20, 40, 200)
 SCENES = ("pyramid", "sphere")
@@ -75,6 +76,14 @@ def build(tmp_path_factory):
     (build / "sweep" / "tessellation.json").write_text(json.dumps(
         {"orders": {"sphere": {t: orders for t in ("phong", "gouraud", "flat")}}}
     ))  # fmt: skip
+    band = {"slope_rms": 0.25, "intensity_rms": 1e-14}
+    turn = {"change_rms": 0.5, "change_max": 29.0, "peak_range": [200, 236]}
+    techniques = ("phong", "gouraud", "flat")
+    (build / "sweep" / "arguments.json").write_text(json.dumps({
+        "mach_bands": {"torus": {"16": dict.fromkeys(techniques, band)}},
+        "flicker": {"torus": dict.fromkeys(techniques, turn)},
+        "orientation": {k: {"largest_spread_lsb": 127.5} for k in ("quadrilateral", "triangles")},
+    }))  # fmt: skip
     row = {"scene": "sphere", "size": "160×120", "pixels": 9000, "spans": 500, "cycles": 9075,
            "fps": 22000.0, "mismatches": 0, "max_lsb": 0.5, "bound_lsb": 0.55}  # fmt: skip
     (build / "results.json").write_text(json.dumps(
@@ -125,13 +134,16 @@ def test_the_numbers_are_those_of_the_runs(html, build):
         )
         assert f"0 of {found['pixels']:,} pixels".replace(",", " ") in html
     assert "201 MHz" in html and "make other" in html and "it broke" in html
+    assert "0.25, 0" in html and "200 to 236" in html
     assert "1.83, 2.00, 1.99" in html and "the frame is one-sided" in html
     assert "&lt;b&gt;bad&lt;/b&gt;" in html and "<b>bad</b>" not in html
 
 
 def test_what_is_missing_names_its_command(tmp_path):
     html = report.page(tmp_path, tmp_path)
-    for command in ("make run", "make results", "make sweep", "make stability", "make synth"):
+    for target in ("run", "results", "sweep", "tessellation", "stability", "synth"):
+        command = f"make {target}"
+        assert f"{target}:" in (ROOT / "Makefile").read_text()
         assert f"run <code>{command}" in html, command
 
 
@@ -404,7 +416,7 @@ def test_nothing_is_without_a_name(visit, html):
 @browser
 def test_a_page_without_any_result(visit, tmp_path):
     page = visit(report.page(tmp_path, tmp_path))
-    assert page.locator(".missing:visible").count() == 8
+    assert page.locator(".missing:visible").count() == 9
 
 
 def test_every_bundled_scene_has_a_place(monkeypatch, tmp_path):

@@ -59,25 +59,30 @@ module equal_register_map #(
       .unsupported(unsupported)
   );
 
-  // Which registers have been written, two clocks late as they are, and whether a word was flagged.
+  // Which registers have been written and what the full one has in them, as late as the flag is.
   wire f_field = write_enable & write_address[ADDRESS_BITS-1];
   wire [INDEX_BITS-1:0] f_index = write_address[INDEX_BITS-1:0];
-  reg [2:0] f_now = 0, f_written = 0;
+  reg [2:0] f_now = 0, f_done = 0, f_done_p1 = 0, f_written = 0;
+  reg [HALF_BITS-1:0] f_x_p1, f_z_p1, f_x, f_z;
+  reg f_two_sided_p1, f_two_sided;
   reg f_flagged = 0;
 
   always @(posedge clk) begin
-    f_now <= {f_field & (f_index == `PHONG_FIELD_CONTROL), f_field & (f_index == `PHONG_FIELD_HALF_Z),
+    f_now <= {f_field & (f_index == `PHONG_FIELD_CONTROL),
+              f_field & (f_index == `PHONG_FIELD_HALF_Z),
               f_field & (f_index == `PHONG_FIELD_HALF_X)};
-    f_written <= f_written | f_now;
+    f_done <= f_done | f_now;
+    {f_done_p1, f_x_p1, f_z_p1, f_two_sided_p1} <= {f_done, full_x, full_z, full_two_sided};
+    {f_written, f_x, f_z, f_two_sided} <= {f_done_p1, f_x_p1, f_z_p1, f_two_sided_p1};
     f_flagged <= f_flagged | unsupported;
   end
 
   always @(*) begin
     a_full : assert (!full_unsupported);
     if (!f_flagged && !unsupported) begin
-      a_x : assert (!f_written[0] || full_x == x);
-      a_z : assert (!f_written[1] || full_z == z);
-      a_two_sided : assert (!f_written[2] || full_two_sided == two_sided);
+      a_x : assert (!f_written[0] || f_x == x);
+      a_z : assert (!f_written[1] || f_z == z);
+      a_two_sided : assert (!f_written[2] || f_two_sided == two_sided);
     end
   end
 

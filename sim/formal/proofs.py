@@ -157,9 +157,8 @@ PROOFS = (
     ),
     Proof(
         "pruned registers", "constant registers = written ones, or a word is flagged",
-        "equal_register_map", "prove", 3, "real widths, any writes",
-        twins=(Twin("register_map", "write_half_z & (table_word[HALF_BITS-1:0] != half_z)",
-                    "1'b0", "a_z"),),
+        "equal_register_map", "prove", 6, "real widths, any writes",
+        twins=(Twin("register_map", "other_z <= half != half_z;", "other_z <= 1'b0;", "a_z"),),
     ),
     Proof(
         "pruned channel", "no specular term = a specular term of 0, a clock later",
