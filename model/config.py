@@ -187,7 +187,9 @@ class Config:
     constant_diffuse: tuple = constants("red", "green", "blue")
 
     # -- other methods for the same job, the first the default (see model/sweep.py) ----------------
-    normal_method: str = choice("normalize", "dot_first", "none")  # none: as interpolated
+    normal_method: str = choice("normalize", "dot_first", "none", "differences")
+    squared: Format = _signed(2, 42)  # differences: |N|**2 and its part across h, interpolated
+    difference_mantissa: Format = _unsigned(1, 17)  # differences: Zn, aligned
     root_method: str = choice("lines", "quadratic", "table", "magic")  # of 1/sqrt
     root_newton_steps: int = 0  # after table or magic: steps of Newton's iteration
     quadratic_index_bits: int = 4  # parabolas in each of [1, 2) and [2, 4)

@@ -25,3 +25,9 @@ def bit_length(value):
     frexp of an integer below 2**53 is exact, so this is an integer operation in disguise.
     """
     return np.frexp(value.astype(np.float64))[1].astype(np.int64)
+
+
+def wrap(value, fmt: Format):
+    """Integer codes modulo the word of the signed format `fmt`, as an adder leaves them."""
+    sign = 1 << (fmt.bits - 1)
+    return ((value + sign) & ((sign << 1) - 1)) - sign

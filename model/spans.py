@@ -36,6 +36,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from . import differences
 from .config import Config
 from .frame import SPAN_DTYPE, Frame, InputError, MaterialTable
 
@@ -68,11 +69,19 @@ class SpanField(NamedTuple):
     bits: int
 
 
+def squares_only(config: Config) -> bool:
+    """Whether spans carry squares of the normal in place of its x and y (model/differences.py)."""
+    return config.technique == "phong" and config.normal_method == "differences"
+
+
 def span_fields(config: Config) -> list[SpanField]:
     """The fields of a record, from bit 0 upwards, without gaps."""
     carried = ("start",) if config.technique == "flat" else ("start", "step")
     axes = "xyz"[: config.values]
     widths = [(f"{what}_{axis}", config.normal.bits) for what in carried for axis in axes]
+    if squares_only(config):
+        widths = [(f"{what}_z", config.normal.bits) for what in carried]
+        widths += [(name, config.squared.bits) for name in differences.NAMES]
     widths += [
         ("x", config.coordinate_bits),
         ("y", config.coordinate_bits),
@@ -116,7 +125,7 @@ def write_spans(path, frame: Frame, config: Config) -> None:
     that a test can offer them to the RTL. Raises ValueError if a value does not fit its field and
     OSError if the file cannot be written.
     """
-    body = pack(frame.spans, config)
+    body = pack(frame.spans, config, frame.half_vector)
     size = record_bits(config) // 8
     header = {
         "width": int(frame.width),
@@ -136,16 +145,19 @@ def write_spans(path, frame: Frame, config: Config) -> None:
     Path(path).write_bytes(lines[:-1].ljust(offset - 1) + b"\n" + body)
 
 
-def pack(spans: np.ndarray, config: Config) -> bytes:
+def pack(spans: np.ndarray, config: Config, half_vector=(0, 0)) -> bytes:
     """The records of `spans` (SPAN_DTYPE[n]), one after the other.
 
-    Raises ValueError if a value does not fit its field.
+    half_vector: that of the frame; it matters where spans carry squares. Raises ValueError if a
+    value does not fit its field.
     """
     words = np.zeros((len(spans), record_bits(config) // _WORD), np.uint64)
     if not np.array_equal(spans, _implied(spans, config)):
         raise ValueError("a span has a step or colours that a record has no place for")
+    squares = differences.coefficients(spans, half_vector, config) if squares_only(config) else {}
     for field in span_fields(config):
-        value, signed = _column(spans, field.name)
+        square = squares.get(field.name)
+        value, signed = _column(spans, field.name) if square is None else (square, True)
         low = -(1 << (field.bits - 1)) if signed else 0
         if len(value) and not (low <= value.min() and value.max() < low + (1 << field.bits)):
             raise ValueError(f"a span's {field.name} does not fit {field.bits} bits")
@@ -160,8 +172,11 @@ def pack(spans: np.ndarray, config: Config) -> bytes:
 def unpack(body: bytes, config: Config) -> np.ndarray:
     """The spans (SPAN_DTYPE[n]) of the records in `body`.
 
-    Raises InputError if a record's padding is not zero.
+    Raises InputError if a record's padding is not zero, or if it carries squares, from which x and
+    y do not come back.
     """
+    if squares_only(config):
+        raise InputError("spans of differences cannot be read back")
     words = np.frombuffer(body, ">u8").reshape(-1, record_bits(config) // _WORD)[:, ::-1]
     words = words.astype(np.uint64)
     fields = span_fields(config)

@@ -182,6 +182,11 @@ def points() -> list[Point]:
               f"{w} bits")
         for w in range(12, MULTIPLIER_BITS + 1, 2)
     ]  # fmt: skip
+    out += [
+        Point(of_width(w, f"differences_{w}", normal_method="differences"),
+              "squares by differences", f"{w} bits")
+        for w in range(12, MULTIPLIER_BITS + 1, 2)
+    ]  # fmt: skip
     for power_method, method in (("squaring", "power: squaring"), ("schlick", "power: Schlick")):
         out += [
             Point(of_width(w, f"{power_method}_{w}", power_method=power_method), method,

@@ -78,9 +78,22 @@
   ( 1                                /* |Zn| */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
+`define PHONG_DIFFERENCE_NORMALIZER_LATENCY \
+  ( 1                                /* clamp */ \
+  + `PHONG_LEADING_ZEROS_LATENCY     /* shifts */ \
+  + `PHONG_LEFT_SHIFTER_LATENCY      /* align; that of the other square takes longer, in time */ \
+  + `PHONG_INVERSE_SQRT_METHOD_LATENCY \
+  + `PHONG_MULTIPLIER_LATENCY        /* versine: square of the root */ \
+  + `PHONG_ROUND_SATURATE_LATENCY \
+  + `PHONG_MULTIPLIER_LATENCY        /* versine: product */ \
+  + 2                                /* versine: shift twice */ \
+  + `PHONG_ROUND_SATURATE_LATENCY )
+
 // From the interpolators to the shading unit.
 `define PHONG_NORMAL_LATENCY \
-  ( `PHONG_HOLD_UNLIT \
+  ( `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_DIFFERENCES ? \
+        `PHONG_DIFFERENCE_NORMALIZER_LATENCY : \
+    `PHONG_HOLD_UNLIT \
   + (`PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_NONE ? `PHONG_UNNORMALIZED_LATENCY : \
     `PHONG_NORMALIZER_LATENCY) )
 
@@ -101,7 +114,7 @@
 // From what the shading unit is given to 1 - cos(s).
 `define PHONG_HIGHLIGHT_LATENCY \
   ( `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_DOT_FIRST ? `PHONG_VERSINE_OF_PARTS_LATENCY : \
-    `PHONG_REFLECTION_LATENCY )
+    `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_DIFFERENCES ? 0 : `PHONG_REFLECTION_LATENCY )
 
 `define PHONG_LOG_LATENCY \
   ( (`PHONG_LOG_OCTAVES ? `PHONG_LEADING_ZEROS_LATENCY + `PHONG_LEFT_SHIFTER_LATENCY : 0) \

@@ -8,6 +8,7 @@
 
 module phong_pipeline #(
     parameter TECHNIQUE          = `PHONG_TECHNIQUE,
+    parameter NORMAL_METHOD      = `PHONG_NORMAL_METHOD,
     parameter COORDINATE_BITS    = `PHONG_COORDINATE_BITS,
     parameter MATERIAL_BITS      = `PHONG_MATERIAL_BITS,
     parameter COLOUR_BITS        = `PHONG_COLOUR_BITS,
@@ -85,7 +86,26 @@ module phong_pipeline #(
   wire [COLOUR_BITS-1:0] red, green, blue;
 
   generate
-    if (TECHNIQUE == `PHONG_TECHNIQUE_PHONG) begin : gen_phong
+    if (TECHNIQUE == `PHONG_TECHNIQUE_PHONG
+        && NORMAL_METHOD == `PHONG_NORMAL_METHOD_DIFFERENCES) begin : gen_differences
+      differences_unit u_differences_unit (
+          .clk(clk),
+          .write_enable(write_enable),
+          .write_address(write_address),
+          .write_word(write_word),
+          .values(span_values),
+          .load(load),
+          .advance(advance),
+          .pixel_valid(pixel_valid),
+          .pixel_material(pixel_material),
+          .red(red),
+          .green(green),
+          .blue(blue),
+          .overflow(overflow),
+          .zero_normal(zero_normal),
+          .unsupported(unsupported)
+      );
+    end else if (TECHNIQUE == `PHONG_TECHNIQUE_PHONG) begin : gen_phong
       phong_unit u_phong_unit (
           .clk(clk),
           .reset(reset),

@@ -45,6 +45,7 @@ module shading_unit #(
     input wire [    UNIT_BITS-1:0] unit_x,    // s0.17, unit normal
     input wire [    UNIT_BITS-1:0] unit_y,
     input wire [    UNIT_BITS-1:0] unit_z,
+    input wire [ VERSINE_BITS-1:0] given_versine,  // u0.22, 1 - cos(s); for differences only
     input wire [  COSINE_BITS-1:0] cosine,    // u0.18, cos(i)
     input wire                     lit,
     input wire [MATERIAL_BITS-1:0] material,
@@ -148,7 +149,11 @@ module shading_unit #(
             .versine(versine)
         );
 
-        wire unused = &{1'b0, half_x, half_z, unit_z};
+        wire unused = &{1'b0, half_x, half_z, unit_z, given_versine};
+      end else if (NORMAL_METHOD == `PHONG_NORMAL_METHOD_DIFFERENCES) begin : gen_given
+        assign versine = given_versine;
+
+        wire unused = &{1'b0, half_x, half_z, unit_x, unit_y, unit_z};
       end else begin : gen_reflection
         reflection u_reflection (
             .clk(clk),
@@ -159,6 +164,8 @@ module shading_unit #(
             .unit_z(unit_z),
             .versine(versine)
         );
+
+        wire unused = &{1'b0, given_versine};
       end
 
       if (POWER_FUNCTION) begin : gen_power

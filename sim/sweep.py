@@ -33,7 +33,7 @@ def _stimulus(frames: list[Frame], config: Config) -> str:
     """A hash of all that the hardware is given."""
     sha = hashlib.sha256()
     for frame in frames:
-        sha.update(pack(frame.spans, config))
+        sha.update(pack(frame.spans, config, frame.half_vector))
         sha.update(json.dumps([[int(a), int(w)] for a, w in writes(frame, config)]).encode())
     return sha.hexdigest()[:16]
 

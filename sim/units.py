@@ -220,6 +220,27 @@ MODULES = {
         ),
         tests="methods",
     ),
+    "difference_normalizer": Module(
+        ("z", "square", "across"),
+        (
+            Stage("difference_normalizer.operand", ("operand",), _sum(1, ZEROS, SHIFT)),
+            Stage(
+                "difference_normalizer.part", ("across_p7 >> dut.PART_DROP",),
+                _sum(1, ZEROS, SHIFT, 2),
+            ),
+            Stage("difference_normalizer.mantissa", ("z_p7",), _sum(1, ZEROS, SHIFT, ROUND)),
+            Stage(
+                "difference_normalizer.root", ("root",),
+                _sum(1, ZEROS, SHIFT, L.format("INVERSE_SQRT_METHOD")),
+            ),
+            Stage(
+                "difference_normalizer.out", ("versine", "cosine", "lit"),
+                L.format("DIFFERENCE_NORMALIZER"),
+            ),
+        ),
+        held=(("two_sided", 1),),
+        tests="methods",
+    ),
     "specular_weight": Module(
         ("cosine", "material"),
         (

@@ -9,6 +9,8 @@ import numpy as np
 
 from ..config import DEFAULT, Config
 from ..frame import Frame
+from ..spans import squares_only
+from .differences_unit import differences_unit
 from .flat_unit import flat_unit
 from .gouraud_unit import gouraud_unit
 from .normal_interpolator import normal_interpolator
@@ -56,6 +58,8 @@ def colours(frame: Frame, span, k, config: Config):
         return gouraud_unit(frame.spans, span, k, config)
     if config.technique == "flat":
         return flat_unit(frame.spans, span, config)
+    if squares_only(config):
+        return differences_unit(frame, span, k, config)
     normal, _ = interpolate(frame.spans, span, k, config)
     return shade(normal, frame.spans["material"][span], frame, config)
 

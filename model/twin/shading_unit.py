@@ -46,16 +46,22 @@ def code(s, config: Config):
     return fixed.round_shift(s * white, config.intensity.fraction)
 
 
-def shading_unit(unit, cosine, lit, material, frame, config: Config, trace: dict | None = None):
+def shading_unit(
+    unit, cosine, lit, material, frame, config: Config, trace: dict | None = None,
+    given_versine=None,
+):  # fmt: skip
     """Codes of red, green, blue, int64[3, n].
 
     unit: int64[3, n] in `unit`, as `normalizer` gives it; cosine: Zn in `cosine`; lit: bool[n];
-    material: int[n]; frame: model.frame.Frame (registers and material table).
+    material: int[n]; frame: model.frame.Frame (registers and material table); given_versine:
+    int64[n] in `versine`, in place of unit by the method `differences`.
     """
     table = frame.materials
     power = weight = np.zeros_like(cosine)
     if config.specular:
-        if config.normal_method == "dot_first":
+        if config.normal_method == "differences":
+            v = given_versine
+        elif config.normal_method == "dot_first":
             v = versine_of_parts(unit[1], unit[0], config)
         else:
             half_vector = config.constant_half_vector or frame.half_vector

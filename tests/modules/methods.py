@@ -11,6 +11,7 @@ import cocotb
 import numpy as np
 
 from model.sweep import CONFIGS
+from model.twin.difference_normalizer import difference_normalizer
 from model.twin.inverse_sqrt_iterated import inverse_sqrt_iterated
 from model.twin.inverse_sqrt_quadratic import inverse_sqrt_quadratic
 from model.twin.newton_step import newton_step
@@ -106,6 +107,41 @@ async def unnormalized_latency(dut):
     half = C.normal.one // 2
     await tb.check_latency([half, 0, 0], [0, half, half], "unnormalized.round")
     await tb.check_latency([half, 0, 0], [half, 0, 1], "unnormalized.lit")
+
+
+@_only("difference_normalizer")
+async def difference_normalizer_random(dut):
+    """Squares of normals of all lengths, near the highlight, too; and any words."""
+    tb = UnitTB(dut, MODULE)
+    rng = np.random.default_rng(SEED)
+    direction = rng.normal(size=(3, RANDOM))
+    direction /= np.linalg.norm(direction, axis=0)
+    direction[:2] *= 2.0 ** -rng.integers(0, 20, RANDOM)
+    normal = direction * 2.0 ** -rng.integers(0, 24, RANDOM)
+    z = C.normal.quantize(normal[2])
+    square, across = (C.squared.quantize((normal[:n] ** 2).sum(axis=0)) for n in (3, 2))
+    across -= rng.integers(0, 3, RANDOM)  # rounding takes it below 0
+    for column, fmt in ((z, C.normal), (square, C.squared), (across, C.squared)):
+        any_word = rng.random(RANDOM) < 0.2
+        column[any_word] = _edges(fmt, rng, int(any_word.sum()))
+        column[rng.random(RANDOM) < 0.02] = 0
+    for two_sided in (0, 1):
+        await tb.hold(two_sided=two_sided)
+        trace = {}
+        difference_normalizer(z, square, across, bool(two_sided), C, trace)
+        await tb.check([z, square, across], trace, NOTE)
+
+
+@_only("difference_normalizer")
+async def difference_normalizer_latency(dut):
+    """One pixel at a time shows at the stated clock only."""
+    tb = UnitTB(dut, MODULE)
+    one, square = C.normal.one, C.squared.one
+    stage = "difference_normalizer.out"
+    await tb.check_latency([one, square, 0], [one, square, square // 4], stage)
+    await tb.check_latency(
+        [one // 2, square, square // 4], [one // 2, square // 2, square // 4], stage
+    )
 
 
 # -- cos(s)^n -------------------------------------------------------------------------------------

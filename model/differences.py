@@ -1,0 +1,43 @@
+"""Squares along a span as polynomials, after Duff (1979).
+
+Along a span the interpolated normal is N = S + k T. So |N|**2, and with it the square of the part
+of N across the half-way vector, |N x h|**2 = (hz y)**2 + (hz x - hx z)**2, are quadratic in k: two
+additions a pixel instead of products. Whoever makes the spans makes their differences, too, as it
+makes S and T; they are a span's in place of x and y.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .config import Config
+from .fixed import wrap
+
+#: The words of a span, in the order of the record: value, first and second difference of each.
+NAMES = ("square_0", "square_1", "square_2", "across_0", "across_1", "across_2")
+
+
+def coefficients(spans, half_vector, config: Config) -> dict[str, np.ndarray]:
+    """{name of NAMES: codes int64[n]} in `Config.squared` of `spans` (SPAN_DTYPE[n]).
+
+    Exact but for one rounding each. What does not fit the word (|N|**2 of 4 and more) wraps.
+    """
+    start, step = (spans[what].T.astype(object) for what in ("start", "step"))
+    hx, hz = (int(h) for h in half_vector)
+    fraction = 2 * config.normal.fraction
+    out = _differences(start, step, fraction, config)
+    parts = [(hz * v[1], hz * v[0] - hx * v[2]) for v in (start, step)]
+    out += _differences(*parts, fraction + 2 * config.half_vector.fraction, config)
+    return dict(zip(NAMES, out, strict=True))
+
+
+def _differences(start, step, fraction: int, config: Config) -> list[np.ndarray]:
+    """Value, first and second difference of the sum of squares of start + k step."""
+    square = sum(s * s for s in start)
+    twice = sum(2 * s * t for s, t in zip(start, step, strict=True))
+    bend = sum(t * t for t in step)
+    drop = fraction - config.squared.fraction
+    half = 1 << (drop - 1)
+    mask = (1 << 62) - 1  # still exact modulo any word
+    exact = (square, twice + bend, 2 * bend)
+    return [wrap((((c + half) >> drop) & mask).astype(np.int64), config.squared) for c in exact]
