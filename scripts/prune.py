@@ -22,7 +22,7 @@ from rich.table import Table
 from model import metrics, twin
 from model.config import DEFAULT, Config
 from model.frame import Frame, InputError
-from model.pruning import BY_HAND, Row, prune
+from model.pruning import BY_HAND, FEATURES, Row, prune
 from model.scene import bundled_scenes, load_scene
 from model.scene_to_spans import front_end
 from scripts import records, synthesis
@@ -78,6 +78,16 @@ def cases() -> list[Case]:
     return out
 
 
+def left_out(config: Config) -> dict:
+    """{feature: value} of what `config` does not have as the full design has it."""
+    given, full = config.as_dict(), DEFAULT.as_dict()
+    return {
+        name: list(given[name]) if isinstance(given[name], tuple) else given[name]
+        for name in (*FEATURES, "technique")
+        if given[name] != full[name]
+    }
+
+
 def simulated(frame: Frame, config: Config) -> tuple[twin.Pixels, float]:
     """Pixels of `frame`, and clocks a second of its simulation. Raises SimulationError where a
     span or a register write is not supported."""
@@ -117,7 +127,7 @@ def measure(case: Case, seeds: int, steps: Steps) -> dict:
             "simulation_clocks_per_s": round(speed),
             "toggles_per_pixel": round(toggles_per_pixel(frame, config, BUILD / "activity")[1], 1),
         }  # fmt: skip
-    return {"name": case.name, "digest": case.config.digest, **found}
+    return {"name": case.name, "left_out": left_out(case.config), **found}
 
 
 def row(found: dict) -> str:
