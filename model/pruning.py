@@ -166,6 +166,9 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[Row]]:
     """
     if config.technique != "phong":
         return _prune_intensities(frame, config)
+    if config.normal_method == "differences":  # its spans have other words, and no guard
+        why = "the method's spans are not looked into"
+        return config, [Row(feature, True, why, "") for feature in FEATURES]
     f = facts(frame, config)
     count = len(f.materials)
     rows: list[Row] = []

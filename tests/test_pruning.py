@@ -337,6 +337,12 @@ def test_other_methods_are_pruned_to_their_own_pixels(method):
         assert metrics.compare(full, own).mismatches == 0, seed
 
 
+def test_a_method_without_a_guard_is_left_whole():
+    config = dataclasses.replace(C, normal_method="differences")
+    pruned, rows = pruning.prune(plain(), config)
+    assert pruned == config and all(row.needed for row in rows)
+
+
 def test_another_method_is_pruned_in_rtl():
     frame = front_end(load_scene("teapot", SIZE)).frame
     config = dataclasses.replace(C, power_method="squaring", root_method="quadratic")
