@@ -103,7 +103,7 @@ def unsupported_spans(frame: Frame, built: Config) -> np.ndarray:
 
 def _idle(largest: int, bits: int) -> int:
     """How many of `bits` are 0 at the top of `largest`, a word that is 0 or more."""
-    return bits - int(largest).bit_length()
+    return max(bits - int(largest).bit_length(), 0)
 
 
 def vanishing_exponent(config: Config) -> int:

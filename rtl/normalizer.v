@@ -24,8 +24,8 @@ module normalizer #(
     parameter COSINE_FRACTION   = `PHONG_COSINE_FRACTION,
     parameter CONSTANT_SHIFT    = `PHONG_CONSTANT_SHIFT,  // 1: all normals are shifted by SHIFT
     parameter SHIFT             = `PHONG_CONSTANT_SHIFT_BY,
-    parameter SPECULAR          = `PHONG_SPECULAR,   // 0: nobody asks for the unit normal itself
-    parameter TWO_SIDED         = `PHONG_TWO_SIDED,  // 0: where Zn < 0, cosine is of no use
+    parameter SPECULAR          = `PHONG_SPECULAR,        // 0: only cosine is of use
+    parameter TWO_SIDED         = `PHONG_TWO_SIDED,       // 0: where Zn < 0, cosine is of no use
     parameter LATENCY           = `PHONG_NORMALIZER_LATENCY
 ) (
     input  wire                   clk,

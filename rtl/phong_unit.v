@@ -7,7 +7,7 @@
 `include "latency.vh"
 
 module phong_unit #(
-    parameter HOLD_UNLIT     = `PHONG_HOLD_UNLIT,
+    parameter HOLD_UNLIT       = `PHONG_HOLD_UNLIT,
     parameter NORMAL_METHOD    = `PHONG_NORMAL_METHOD,
     parameter NORMAL_BITS      = `PHONG_NORMAL_BITS,
     parameter COORDINATE_BITS  = `PHONG_COORDINATE_BITS,

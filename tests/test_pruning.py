@@ -325,7 +325,7 @@ def test_random_scene(seed):
 
 @pytest.mark.parametrize("method", [
     {"power_method": "squaring"}, {"power_method": "schlick"}, {"normal_method": "none"},
-    {"root_method": "table", "root_newton_steps": 1},
+    {"normal_method": "dot_first"}, {"root_method": "table", "root_newton_steps": 1},
 ])  # fmt: skip
 def test_other_methods_are_pruned_to_their_own_pixels(method):
     config = dataclasses.replace(C, name="method", **method)
