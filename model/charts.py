@@ -46,7 +46,8 @@ def _curves(axes: Axes, rows: list[dict], x: Callable, y: Callable) -> None:
         axes.plot(
             [x(row) for row in own], [y(row) for row in own],
             marker="*" if default else _MARKERS[k % len(_MARKERS)], linewidth=0.8,
-            color="black" if default else matplotlib.colormaps["tab20"](k % 20), markersize=10 if default else None,
+            color="black" if default else matplotlib.colormaps["tab20"](k % 20),
+            markersize=10 if default else None,
             zorder=5 if default else 2, label=method, alpha=0.9,
         )  # fmt: skip
     front = pareto([x(row) for row in rows], [y(row) for row in rows])
