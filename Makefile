@@ -54,7 +54,7 @@ help: ## this list
 	@echo '                GATES=1         count gate equivalents in standard cells, too (minutes)'
 	@echo 'make sweep    error against run time and hardware over word widths and methods; build/sweep/'
 	@echo '                AREA=1          synthesize each configuration, too, for its size'
-	@echo '                ROUTE=1         place and route each, too, for its clock: hours'
+	@echo '                ROUTE=1         place and route each, too, for its clock: hours; or ROUTE=name,name'
 	@echo 'make tessellation  error against true surfaces, from coarse to fine meshes; Mach bands,'
 	@echo '                flicker, orientation; part of make sweep, a minute'
 	@echo 'make netlist  whole frames through the netlist in ECP5 cells, against the model'

@@ -38,7 +38,7 @@ def wrong_share(row: dict) -> float:
 
 
 def _curves(axes: Axes, rows: list[dict], x: Callable, y: Callable) -> None:
-    """One curve a method, from the default point on where that belongs to it."""
+    """One curve a method, and the Pareto front of all points."""
     for k, method in enumerate(dict.fromkeys(row["method"] for row in rows)):
         own = [row for row in rows if row["method"] == method]
         own.sort(key=y)
@@ -46,13 +46,14 @@ def _curves(axes: Axes, rows: list[dict], x: Callable, y: Callable) -> None:
         axes.plot(
             [x(row) for row in own], [y(row) for row in own],
             marker="*" if default else _MARKERS[k % len(_MARKERS)], linewidth=0.8,
-            color="black" if default else f"C{k % 10}", markersize=10 if default else None,
+            color="black" if default else matplotlib.colormaps["tab20"](k % 20),
+            markersize=10 if default else None,
             zorder=5 if default else 2, label=method, alpha=0.9,
         )  # fmt: skip
     front = pareto([x(row) for row in rows], [y(row) for row in rows])
     ends = sorted((x(row), y(row)) for row, on in zip(rows, front, strict=True) if on)
     axes.step(*zip(*ends, strict=True), where="post", color="black", linewidth=2.5, alpha=0.25,
-              zorder=1, label="Pareto front")  # fmt: skip
+              marker="o", markersize=12, zorder=1, label="Pareto front")  # fmt: skip
     axes.set_xscale("log")
     axes.set_yscale("log")
     axes.minorticks_on()
@@ -119,12 +120,13 @@ def time_chart(rows: list[dict], path: Path) -> None:
 
 
 def cost_chart(rows: list[dict], path: Path) -> None:
-    """Error over multipliers and over logic, of the rows that have been synthesized."""
-    columns = [
-        ("DSP blocks (MULT18X18D)", lambda row: row["dsp"]),
-        ("LUT sites: LUT4 + 2 per carry cell + 4 per LUT RAM", lambda row: row["lut"]),
-    ]
-    _figure(rows, columns, "Error against hardware (ECP5, Yosys)", path)
+    """Error over multipliers and, if all rows have been synthesized, over logic."""
+    columns = [("multipliers of at most 18 x 18 bits", lambda row: row["multipliers"])]
+    if all(row["lut"] is not None for row in rows):
+        columns.append(
+            ("LUT sites: LUT4 + 2 per carry cell + 4 per LUT RAM", lambda row: row["lut"])
+        )
+    _figure(rows, columns, "Error against hardware (ECP5; logic by Yosys)", path)
 
 
 def tessellation_chart(rows: list[dict], path: Path) -> None:

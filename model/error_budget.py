@@ -78,7 +78,7 @@ def start(config: Config) -> float:
     if config.root_method == "table":
         return (np.sqrt(1 + 2.0**-config.start_index_bits) - 1) / 2 + _round(config.root) / 0.5
     constant = (0x5F3759DF - 127 * 2**22 - 125 * 2**23) / 2**23  # 1.93: 2 + log2 of the result
-    fall = 2 + 4 * (constant - 1.5)  # log2 of x read as 1 + f is 2 (constant - 1): exponent falls
+    fall = 4 * (constant - 1)  # constant - log/2 falls below 1, log = x/2
     # Result for log (the number read from x): 2**(i - 2) (1 + constant - log/2 - i), i = 1 or 0.
     pieces = (  # x from, to; a, b
         (1.0, 2.0, (constant + 0.5) / 2, 0.25),  # log = x - 1, i = 1
@@ -178,8 +178,7 @@ def squaring(n: int, config: Config) -> float:
 def specular_power(n: float, config: Config) -> float:
     """Error of cos(s)**n against (1 - v)**n of its own operands, by the method of `config`.
 
-    By tables:
-    With x = n * -log2(cos s), an error dx changes the power by at most 2**-x ln 2 dx.
+    By tables: with x = n * -log2(cos s), an error dx changes the power by at most 2**-x ln 2 dx.
     log: straight lines (the first is clipped at 0: no halving), half a unit of value and of slope,
     the cut of the product. Mantissa of the log: cut to `log_mantissa_bits`, relative, x 2**-x ln 2
     is at most 1/e. x: cut, but the table of 2**-f is centred on the cut. exp: straight lines, half

@@ -168,7 +168,7 @@ def points() -> list[Point]:
     out += [
         Point(
             _root(f"magic_{steps}", root_method="magic", root_newton_steps=steps),
-            "1/sqrt: 0x5f3759df + Newton", f"{steps} steps",
+            "1/sqrt: 0x5f3759df + Newton", f"{steps} step{'s' * (steps != 1)}",
         )
         for steps in range(3)
     ]  # fmt: skip
@@ -178,7 +178,7 @@ def points() -> list[Point]:
         for k in range(3, DEFAULT.log_index_bits)
     ]
     out += [
-        Point(of_width(w, f"dot_first_{w}", normal_method="dot_first"), "dot, then scale",
+        Point(of_width(w, f"dot_first_{w}", normal_method="dot_first"), "dot then scale",
               f"{w} bits")
         for w in range(12, MULTIPLIER_BITS + 1, 2)
     ]  # fmt: skip

@@ -203,6 +203,8 @@ module phong_unit #(
       );
 
       assign zero_normal = 1'b0;  // nobody divides by its length
+
+      wire unused = &{1'b0, held_valid};
     end else begin : gen_normalized
       normalizer u_normalizer (
           .clk(clk),

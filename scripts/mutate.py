@@ -54,6 +54,12 @@ BENCHES = {
         "round_saturate", "delay", "rom", "ram", "small_ram",
     )},
     **{name: (name,) for name in MODULES},
+    "inverse_sqrt_method": ("normalizer",),
+    "specular_power_method": ("shading_unit",),
+    "slope_multiplier": ("specular_power",),
+    "across": ("reflection",),
+    "versine_of_parts": ("reflection",),
+    "differences_unit": (),  # wiring; tests/test_sweep.py runs frames through it
     "normal_interpolator": ("primitives", "phong_pipeline"),
     "register_map": ("primitives", "phong_pipeline"),
     "colour_channel": ("primitives", "shading_unit"),

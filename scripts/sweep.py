@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import difflib
 import multiprocessing
 import os
 import sys
@@ -23,9 +24,10 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from model.charts import cost_chart, pareto, time_chart
 from model.frame import InputError
-from model.sweep import Point, points
-from scripts import synthesis
+from model.sweep import CONFIGS, Point, points
+from scripts import records, synthesis
 from sim.build import BUILD, BuildError, runtime
+from sim.elaborate import instances
 from sim.run_frame import SimulationError
 from sim.sweep import FOLDER, measure
 
@@ -34,9 +36,21 @@ GRADE, SEED = 6, 1
 COLUMNS = (
     "name", "family", "method", "label", "cycles", "clock_mhz", "clock_source", "frame_us",
     "max_lsb", "rms_lsb", "p999_lsb", "mean_lsb", "correctly_rounded", "psnr_db", "simulate_s",
-    "model_s", "dsp", "lut", "ff", "ebr", "pareto",
-    "latency_cycles", "pixels", "mismatches", "port_max_lsb", "bound_lsb", "pareto_hardware",
+    "model_s", "dsp", "lut", "ff", "ebr", "pareto", "multipliers", "latency_cycles", "pixels",
+    "mismatches", "port_max_lsb", "bound_lsb", "pareto_hardware",
 )  # fmt: skip
+
+
+#: What the README shows: what a designer would choose between.
+SHOWN = (
+    "default", "differences_18", "dot_first_18", "table_2048", "lines_32", "parabolas_8",
+    "table_128_newton", "magic_1", "magic_2", "not_normalized", "power_tables_32", "squaring_18",
+    "schlick_18", "interpolator_16", "interpolator_20", "width_14", "width_10",
+)  # fmt: skip
+HEADER = """\
+| configuration | method, size | multipliers | latency, clocks | RMS, LSB | largest, LSB | bound | \
+rounded right |
+|---|---|--:|--:|--:|--:|--:|--:|"""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -47,15 +61,25 @@ class _Parser(argparse.ArgumentParser):
 
 
 def parse(argv) -> argparse.Namespace:
-    """The command line `argv`: `area` and `route`, both bool. Raises InputError."""
+    """The command line `argv`: `area`, bool, and `route`, the configurations to route.
+
+    Raises InputError.
+    """
     parser = _Parser(prog="sweep", description=__doc__.partition("\n")[0])
     parser.add_argument("--area", default="", help="1: synthesize, for the hardware's size")
-    parser.add_argument("--route", default="", help="1: place and route, too, for the clock")
+    parser.add_argument("--route", default="", help="1, or names: place and route, for the clock")
     given = parser.parse_args(argv)
-    for name in ("area", "route"):
-        if getattr(given, name) not in ("", "0", "1"):
-            raise InputError(f"{name.upper()} is `{getattr(given, name)}`; it must be 0 or 1")
-        setattr(given, name, getattr(given, name) == "1")
+    if given.area not in ("", "0", "1"):
+        raise InputError(f"AREA is `{given.area}`; it must be 0 or 1")
+    given.area = given.area == "1"
+    if given.route in ("", "0", "1"):
+        given.route = set(CONFIGS) if given.route == "1" else set()
+    else:
+        given.route = set(given.route.split(","))
+        for name in sorted(given.route - set(CONFIGS)):
+            close = difflib.get_close_matches(name, CONFIGS, 1)
+            hint = f"; did you mean {close[0]}?" if close else ""
+            raise InputError(f"ROUTE: there is no configuration `{name}`{hint}")
     return given
 
 
@@ -79,7 +103,7 @@ def hardware(point: Point, route: bool) -> dict:
 
 def row(point: Point, area: bool, route: bool) -> dict:
     """The row of one configuration; COLUMNS but for the Pareto fronts."""
-    found = measure(point)
+    found = measure(point) | {"multipliers": instances(point.config)["multiplier"]}
     found |= {"clock_mhz": STATED_MHZ, "clock_source": "stated"}
     found |= dict.fromkeys(("dsp", "lut", "ff", "ebr"))
     if area or route:
@@ -103,6 +127,21 @@ def failures(rows: list[dict]) -> list[str]:
                 f"derived bound {found['bound_lsb']:.4f}"
             )
     return lines
+
+
+def readme(rows: list[dict]) -> str:
+    """The README's table of `SHOWN`. Bounds are of the error against the integers at the ports."""
+    by_name = {found["name"]: found for found in rows}
+    lines = [HEADER]
+    for name in SHOWN:
+        found = by_name[name]
+        bound = "none derived" if found["bound_lsb"] is None else f"{found['bound_lsb']:.2f}"
+        lines.append(
+            f"| {name} | {found['method']}, {found['label']} | {found['multipliers']} "
+            f"| {found['latency_cycles']} | {found['rms_lsb']:.3f} | {found['max_lsb']:.2f} "
+            f"| {bound} | {100 * found['correctly_rounded']:.2f} % |"
+        )
+    return "\n".join(lines)
 
 
 def write_csv(rows: list[dict], path: Path) -> None:
@@ -136,12 +175,14 @@ def finish(rows: list[dict], folder: Path = FOLDER) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     write_csv(rows, folder / "precision.csv")
     time_chart(rows, folder / "precision_time")
-    if sized:
-        cost_chart(sized, folder / "precision_hardware")
+    cost_chart(rows, folder / "precision_hardware")
 
 
-def run(todo: list[Point], area: bool, route: bool) -> list[dict]:
-    """The rows of `todo`, as many at a time as there are processors; shows progress."""
+def run(todo: list[Point], area: bool, route: set[str]) -> list[dict]:
+    """The rows of `todo`, those named in `route` with the clock of place and route.
+
+    As many at a time as there are processors; shows progress. Raises as `row`.
+    """
     console = Console(stderr=True)
     runtime()  # once, before all need it
     rows: dict[str, dict] = {}
@@ -155,7 +196,7 @@ def run(todo: list[Point], area: bool, route: bool) -> list[dict]:
         ProcessPoolExecutor(os.cpu_count(), mp_context=spawn) as pool,
     ):
         task = bar.add_task("sweep", total=len(todo))
-        jobs = {pool.submit(row, point, area, route): point for point in todo}
+        jobs = {pool.submit(row, point, area, point.config.name in route): point for point in todo}
         try:
             for job in as_completed(jobs):
                 found = rows[jobs[job].config.name] = job.result()
@@ -182,6 +223,8 @@ def main(argv=None) -> int:
         return 1
     finish(rows)
     wrong = failures(rows)
+    if not wrong:
+        records.save("sweep", "make sweep", ("verilator", "numpy"), [], readme=readme(rows))
     for line in wrong:
         print(f"Error: {line}", file=sys.stderr)
     print(f"{len(rows)} configurations: build/sweep/precision.csv, and charts beside it")

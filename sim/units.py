@@ -220,6 +220,11 @@ MODULES = {
         ),
         tests="methods",
     ),
+    "quadratic_interpolator": Module(
+        ("advance", "load", "start", "first", "second"),
+        (Stage("quadratic_interpolator", ("+value",), "1"),),
+        tests="methods",
+    ),
     "difference_normalizer": Module(
         ("z", "square", "across"),
         (

@@ -17,8 +17,8 @@ from model.spans import read_spans, write_spans
 from model.sweep import CONFIGS, of_width, points
 from model.twin.quadratic_interpolator import quadratic_interpolator
 from model.verilog import header
-from scripts import sweep
-from sim.build import Bench
+from scripts import records, sweep
+from sim.build import ROOT, Bench
 from sim.elaborate import instances
 from sim.latency import latencies
 from sim.sweep import measure
@@ -144,7 +144,8 @@ def _rows():
             "frame_us": (1000 + k) / 200, "latency_cycles": 77 + k, "max_lsb": 0.5 + k,
             "rms_lsb": 0.3 + (k % 5), "p999_lsb": 0.5, "mean_lsb": 0.26, "psnr_db": None,
             "correctly_rounded": 1 - k / 100, "simulate_s": 0.1, "model_s": 0.1, "pixels": 100,
-            "mismatches": 0, "complete": True, "port_max_lsb": 0.5, "bound_lsb": None,
+            "multipliers": 19, "complete": True,
+            "mismatches": 0, "port_max_lsb": 0.5, "bound_lsb": None,
             "dsp": 19 - k if k % 2 else None, "lut": 3000 if k % 2 else None,
             "ff": 10 if k % 2 else None, "ebr": 4 if k % 2 else None,
         })  # fmt: skip
@@ -170,10 +171,14 @@ def test_table_and_charts(tmp_path):
 
 
 def test_bad_command_lines(capsys):
-    assert sweep.main(["--route=yes"]) == 2
+    assert sweep.main(["--area=yes"]) == 2
+    assert sweep.main(["--route=default,magic1"]) == 2
     assert sweep.main(["--areal"]) == 2
     said = capsys.readouterr().err.splitlines()
-    assert said[0] == "Error: ROUTE is `yes`; it must be 0 or 1" and len(said) == 2
+    assert len(said) == 3 and said[:2] == [
+        "Error: AREA is `yes`; it must be 0 or 1",
+        "Error: ROUTE: there is no configuration `magic1`; did you mean magic_1?",
+    ]
 
 
 def test_failures():
@@ -183,3 +188,17 @@ def test_failures():
     rows[3]["complete"] = False
     said = sweep.failures(rows)
     assert len(said) == 2 and "derived bound 0.6" in said[0] and rows[3]["name"] in said[1]
+
+
+def test_the_readme_shows_the_record():
+    text = (ROOT / "README.md").read_text()
+    assert records.load("sweep")["readme"] in text, "the README's table is old: make sweep"
+
+
+def test_the_record_is_what_is_measured_now(tmp_path):
+    """The default configuration anew, at full size."""
+    found = measure(points()[0], folder=tmp_path)
+    line = next(line for line in records.load("sweep")["readme"].split("\n") if "| default" in line)
+    found |= {"multipliers": instances()["multiplier"]}
+    rows = [found | {"name": name} for name in sweep.SHOWN]
+    assert sweep.readme(rows).split("\n")[2] == line

@@ -17,6 +17,7 @@ from model.twin.inverse_sqrt_quadratic import inverse_sqrt_quadratic
 from model.twin.newton_step import newton_step
 from model.twin.power_schlick import power_schlick
 from model.twin.power_squaring import power_squaring
+from model.twin.quadratic_interpolator import quadratic_interpolator
 from model.twin.unnormalized import unnormalized
 from sim.unit_tb import UnitTB
 from tests.modules.datapath import _edges, _normals
@@ -107,6 +108,28 @@ async def unnormalized_latency(dut):
     half = C.normal.one // 2
     await tb.check_latency([half, 0, 0], [0, half, half], "unnormalized.round")
     await tb.check_latency([half, 0, 0], [half, 0, 1], "unnormalized.lit")
+
+
+@_only("quadratic_interpolator")
+async def quadratic_interpolator_random(dut):
+    """Spans of 1 to 60 pixels, any words, wrapped around; held at times, when nothing may move."""
+    tb = UnitTB(dut, MODULE)
+    rng = np.random.default_rng(SEED)
+    lengths = rng.integers(1, 61, 2000)
+    k = np.concatenate([np.arange(n) for n in lengths])
+    span = np.repeat(np.arange(len(lengths)), lengths)
+    words = [_edges(C.squared, rng, len(lengths)) >> rng.integers(0, 40, len(lengths))
+             for _ in range(3)]  # fmt: skip
+    pixels = quadratic_interpolator(*(w[span] for w in words), k, C)
+    advance = rng.random(2 * len(k)) < 0.7
+    advance[0] = True
+    place = np.minimum(np.cumsum(advance) - 1, len(k) - 1)  # the pixel taken, or held, at a clock
+    advance &= np.cumsum(advance) <= len(k)
+    # While nothing advances, whatever stands at the other ports is not looked at.
+    at_ports = [np.where(advance, w[span][place], rng.integers(0, 99, len(place))) for w in words]
+    load = np.where(advance, k[place] == 0, rng.random(len(place)) < 0.5)
+    trace = {"quadratic_interpolator": (pixels[place],)}
+    await tb.check([advance, load, *at_ports], trace, NOTE)
 
 
 @_only("difference_normalizer")
