@@ -58,10 +58,10 @@ def test_a_broken_design_fails_and_is_located(tmp_path):
     """The check can fail: 1 - cos(s) from p*q in place of p*p, and the stage is named."""
     rtl = tmp_path / "rtl"
     shutil.copytree(RTL, rtl)
-    text = (rtl / "reflection.v").read_text()
-    broken = text.replace(".b(p_p6)", ".b(q_p6)")
+    text = (rtl / "versine_of_parts.v").read_text()
+    broken = text.replace(".b(p),", ".b(q),")
     assert broken != text
-    (rtl / "reflection.v").write_text(broken)
+    (rtl / "versine_of_parts.v").write_text(broken)
     frame = front_end(load_scene("sphere", (64, 48))).frame
     result = simulate_jobs([Job(frame)], C, Bench("frame_bench", C, rtl=rtl))[0]
     comparison = metrics.compare(twin.render(frame), result.pixels)
