@@ -83,6 +83,8 @@ def _write(folder: Path, proof: Proof, twin: Twin | None, rtl: Path) -> list[str
 def _commands(proof: Proof, names: list[str], twin: Twin | None, rtl: Path) -> list[str]:
     """The Yosys script that reads the design."""
     defines = ["-D F_BROKEN"] if twin else []
+    if proof.mode == "cover":
+        defines.append("-D F_COVER")
     files = [n for n in names if n.endswith(".v")]
     if proof.top != "phong_pipeline" and not (_HERE / f"{proof.top}.v").is_file():
         files = [f"{proof.top}.v"]

@@ -99,6 +99,11 @@
     f_out <= {m_axis_tlast, m_axis_tdata};
   end
 
+`ifdef F_COVER
+  // What is to be shown possible is shown for one way to do it, which spares the solver a search.
+  always @(*) if (f_past) assume (!reset && f_single && s_axis_tvalid && m_axis_tready);
+`endif
+
   // ---- the properties ----
   always @(*) begin
     if (f_past) begin

@@ -68,7 +68,7 @@ _READY = "span_ready = credit & ~walking;"
 _WALKER_TWINS = (
     Twin("span_walker", "pixel_valid = busy & credit;", "pixel_valid = busy;", "a_credit"),
     Twin("span_walker", _READY, "span_ready = ~walking;", "a_ready"),
-    Twin("span_walker", "next_ends <= remaining == 2;", "next_ends <= remaining == 3;", "a_ready"),
+    Twin("span_walker", "next_ends <= remaining == 2;", "next_ends <= remaining == 3;", "a_load"),
     Twin("span_walker", "<= {beyond, pixel_x} + 1'b1;", "<= {beyond, pixel_x};", "a_place"),
     Twin("span_walker", "illegal <= (beyond != 0) | overflow;", "illegal <= overflow;",
          "a_illegal"),
