@@ -7,6 +7,7 @@ counts is their ratio; the best of each is taken, since other work on the machin
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import os
 import re
@@ -21,6 +22,8 @@ from rich.console import Console
 from rich.table import Table
 
 from model.config import DEFAULT as CONFIG
+from model.config import Config
+from model.frame import Frame
 from model.registers import writes
 from model.scene import load_scene
 from model.scene_to_spans import front_end
@@ -37,20 +40,31 @@ SCENE, SIZE = "teapot", (640, 480)
 COPIES = 8  # frames a measurement, so that it lasts long enough
 
 
-def bare(bench: Bench, frame, folder: Path) -> float:
-    """Clocks a second of the bare loop of sim/main.cpp (its file format too) on `frame`."""
-    words = record_bits(CONFIG) // 32
-    spans = pack(frame.spans, CONFIG)
+def repeated(frame: Frame, copies: int) -> Frame:
+    """`copies` times `frame` in one, for a run that lasts long enough."""
+    spans = np.tile(frame.spans, copies)
+    spans["last"][:-1] = False
+    return dataclasses.replace(frame, spans=spans)
+
+
+def write_bare(frame: Frame, config: Config, file: Path) -> Path:
+    """Write `frame` for the bare loop of sim/main.cpp, which says what is in `file`; returns it."""
+    words = record_bits(config) // 32
+    spans = pack(frame.spans, config)
     spans = np.frombuffer(spans, ">u4").reshape(-1, words)[:, ::-1]
-    written = writes(frame, CONFIG)
-    last_bit = span_fields(CONFIG)[-1].lsb
+    written = writes(frame, config)
+    last_bit = span_fields(config)[-1].lsb
     pixels = int(frame.spans["length"].sum())
     head = [len(written)]
     for address, word in written:
         head += [address, word & 0xFFFFFFFF, word >> 32]
     head += [len(spans), words, last_bit, pixels]
-    file = folder / "bare"
     file.write_bytes(np.array(head, "<u4").tobytes() + spans.astype("<u4").tobytes())
+    return file
+
+
+def bare(bench: Bench, file: Path) -> float:
+    """Clocks a second of the bare loop on what `write_bare` wrote: the pipeline alone."""
     said = subprocess.run(
         [bench.make() / "phong_pipeline", "--bare", file],
         check=True, text=True, stdout=subprocess.PIPE,
@@ -85,17 +99,16 @@ def model_seconds(count: int) -> float:
 def main() -> int:
     """Measure and print; the numbers also go to build/bench.json. Returns the exit code."""
     console = Console(stderr=True)
-    frame = front_end(load_scene(SCENE, SIZE)).frame
-    frame.spans = np.tile(frame.spans, COPIES)
-    frame.spans["last"][:-1] = False
+    frame = repeated(front_end(load_scene(SCENE, SIZE)).frame, COPIES)
     pipeline, bench = Bench("phong_pipeline", CONFIG), Bench("frame_bench", CONFIG)
     pipeline.make()
     bench.make()
     rates: dict[str, list[float]] = {"bare": [], "cocotb": []}
     with tempfile.TemporaryDirectory(dir=BUILD) as name:
+        file = write_bare(frame, CONFIG, Path(name) / "bare")
         for k in range(ROUNDS):
             console.print(f"round {k + 1} of {ROUNDS} ...")
-            rates["bare"].append(bare(pipeline, frame, Path(name)))
+            rates["bare"].append(bare(pipeline, file))
             rates["cocotb"].append(under_cocotb(bench, frame))
     pixels = SIZE[0] * SIZE[1]
     seconds = model_seconds(pixels)
