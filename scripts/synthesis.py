@@ -17,6 +17,7 @@ import statistics
 import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import dataclass
@@ -176,6 +177,26 @@ def resets(netlist: Path) -> dict[str, int]:
             module = _place(name, modules)["module"]
             found[module] = found.get(module, 0) + 1
     return found
+
+
+def lut_sites(cells: dict[str, int]) -> int:
+    """LUTs of `_resources`, those of carry cells and LUT RAM included."""
+    return cells["lut"] + 2 * cells["carry"] + 4 * cells["lut_ram"]
+
+
+def cells_of(netlist: Path, module: str) -> dict[str, int]:
+    """Cells of the flattened `netlist` that instances of `module` became, by kind.
+
+    A flip-flop or carry cell says which source it is from, and may be named after a net of the
+    module outside; a LUT has a name only.
+    """
+    modules, found = _modules(netlist), Counter()
+    for name, cell in json.loads(netlist.read_text())["modules"][_HARNESS]["cells"].items():
+        source = cell["attributes"].get("src", "")
+        own = f"rtl/{module}.v" in source
+        if own or "rtl/" not in source and _place(name, modules)["module"] == module:
+            found[cell["type"]] += 1
+    return _resources(found)
 
 
 def synthesize(config: Config, folder: Path) -> dict:

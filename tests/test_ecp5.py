@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 
 import numpy as np
@@ -53,6 +54,26 @@ def test_the_technology_replaces_what_it_has():
 def test_clock_is_clamped_by_the_slowest_block():
     assert synthesis.clock_limit({"dsp": 1, "ebr": 1}, 6) == (212, "block RAM")
     assert synthesis.clock_limit({"dsp": 1, "ebr": 0}, 8) == (380, "multiplier")
+
+
+def test_cells_of_a_module(tmp_path):
+    """By source where a cell has one, for its name may be that of a net outside; else by name."""
+    inside, outside = "rtl/delay.v:9.1-9.2|/share/map.v:1.1", "rtl/rom.v:9.1-9.2|/share/map.v:1.1"
+    cells = {
+        "dut.u_a": ("$scopeinfo", "", "delay"), "dut": ("$scopeinfo", "", "phong_pipeline"),
+        "dut.u_a.x_LUT4_Z": ("LUT4", "/share/map.v:1.1", ""),
+        "dut.x_LUT4_Z": ("LUT4", "/share/map.v:1.1", ""),
+        "dut.x_CCU2C_S0": ("CCU2C", inside, ""), "dut.u_a.x_CCU2C_S0": ("CCU2C", outside, ""),
+        "dut.x_CCU2C_S0_1": ("CCU2C", inside, ""), "dut.u_a.m_LUT4_Z_1": ("LUT4", "", ""),
+    }  # fmt: skip
+    netlist = tmp_path / "netlist.json"
+    made = {
+        name: {"type": kind, "attributes": {"src": source, "module": module}}
+        for name, (kind, source, module) in cells.items()
+    }
+    netlist.write_text(json.dumps({"modules": {"harness": {"cells": made}}}))
+    found = synthesis.cells_of(netlist, "delay")
+    assert (found["lut"], found["carry"], synthesis.lut_sites(found)) == (2, 2, 6)
 
 
 @pytest.mark.parametrize(
