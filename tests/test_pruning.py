@@ -455,7 +455,7 @@ def test_latency_falls():
 def test_the_readme_shows_the_last_measurement_of_these_builds():
     """The table is that of the record, and the record is of the builds of today's analysis."""
     record = records.load("prune")
-    assert prune.markdown(record["table"]) in (ROOT / "README.md").read_text()
+    assert prune.for_readme(record) in (ROOT / "README.md").read_text()
     today = {case.name: case for case in prune.cases()}
     assert [found["name"] for found in record["table"]] == list(today)
     for found in record["table"]:
@@ -466,8 +466,12 @@ def test_the_readme_shows_the_last_measurement_of_these_builds():
 
 def test_the_bars():
     """DSP multipliers: 8 for diffuse colour, 6 for grey, none for the older techniques, and for
-    the teapot a quarter fewer than in the full design; measured, and as it is elaborated."""
+    the teapot a quarter fewer than in the full design; measured, and as it is elaborated. No
+    pruned build simulates slower than the full one."""
     rows = {found["name"]: found for found in records.load("prune")["table"]}
+    for name, found in rows.items():
+        pruned, of_full = (found[key]["simulation_clocks_per_s"] for key in ("pruned", "full"))
+        assert pruned >= of_full, name
     dsp = {name: found["pruned"]["dsp"] for name, found in rows.items()}
     assert dsp["diffuse"] <= 8 and dsp["diffuse grey"] <= 6
     assert dsp["gouraud"] == dsp["flat"] == 0
@@ -476,4 +480,23 @@ def test_the_bars():
     assert instances(pruning.BY_HAND["diffuse"])["multiplier"] <= 8
     assert instances(pruning.BY_HAND["diffuse grey"])["multiplier"] <= 6
     teapot = pruning.prune(front_end(load_scene("teapot", SIZE)).frame)[0]
-    assert instances(teapot)["multiplier"] <= 0.75 * instances(C)["multiplier"]
+    built = instances(teapot)
+    assert built["multiplier"] <= 0.75 * instances(C)["multiplier"]
+    assert built["constant_multiplier"] == rows["teapot"]["pruned"]["constant_multipliers"]
+
+
+def test_what_was_not_measured_is_a_dash():
+    found = dict.fromkeys(prune.COLUMNS, 3) | {"constant_multipliers": 0, "constant_lut_sites": 0}
+    pruned = found | {"constant_multipliers": 2, "constant_lut_sites": 70, "dsp": 1}
+    pruned["gate_equivalents"] = pruned["clock_mhz"] = None
+    cells = prune.row({"name": "a", "pruned": pruned, "full": found}).strip("| ").split(" | ")
+    assert cells[:4] == ["a", "1 (33 %)", "2, 70", "3 (100 %)"]
+    assert len(cells) == prune.HEADER.splitlines()[1].count("|") - 1
+    assert [k for k, cell in enumerate(cells) if cell == "-"] == [6, 8]
+
+
+@pytest.mark.parametrize("wrong", ["--gates=2", "--seeds=x", "--seeds=101", "--what"])
+def test_wrong_input_is_one_line(wrong, capsys):
+    assert prune.main(["--scene=all", wrong]) == 2
+    said = capsys.readouterr()
+    assert said.out == "" and said.err.count("\n") == 1
