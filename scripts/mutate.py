@@ -2,10 +2,11 @@
 
 Two kinds of mutants of rtl/, one change each. Constants: every number that is written by hand,
 changed by one (one bit of a sized literal is flipped). Operators: every operator for its
-neighbour, every condition negated, every choice turned round, every register held. The module
-tests run on the changed copy. A mutant is killed if it does not build without a warning, fails a
-test or hangs. Survivors are printed with file and line; those in scripts/equivalent_mutants.txt
-are explained there and do not count.
+neighbour, every condition negated, every choice turned round, every register held. The trials and
+module tests of the file run on the changed copy: on builds with what the default configuration
+leaves out, too. A mutant is killed if it does not build without a warning, fails a test or hangs; a
+bench of which Verilator makes the same program as before is not run. Survivors are printed with
+file and line; those in scripts/equivalent_mutants.txt are explained there and do not count.
 
 Exit code: 0; 1 if a mutant survived that is not explained; 2 if the command line is wrong.
 """
@@ -34,7 +35,9 @@ from scripts.lint import CONFIGS
 from sim import build
 from sim.benches import module_bench
 from sim.build import ROOT, RTL, Bench, BuildError
+from sim.run_frame import SimulationError
 from sim.units import MODULES
+from tests.modules.trials import TRIALS, trial
 
 EXPLAINED = ROOT / "scripts" / "equivalent_mutants.txt"
 FOLDER = ROOT / "build" / "mutants"
@@ -43,32 +46,95 @@ SEED = 75
 KINDS = ("constant", "operator")
 SIMULATION_SECONDS = 40
 MUTANT_SECONDS = 150
+REFUSED = "does not build"
 
-#: Benches that could notice a change of a file, the cheapest first.
-_OLDER = ("gouraud", "flat")
+#: Module benches and trials (tests/modules/trials.py) that could notice a change of a file. Those
+#: of the default configuration come first, for most changes fail them.
+_SMALL = ("default", "primitives")
+_SINGLE = ("single", "single grey", "single matte", "single cosine", "single glow")
+_OLDER = ("gouraud 3", "gouraud 1", "flat 3", "flat 1", "gouraud", "flat")
+_METHODS = (
+    "not_normalized", "dot_first_18", "differences_18", "table_32_newton", "magic_2",
+    "parabolas_8", "squaring_18", "schlick_18",
+)  # fmt: skip
 BENCHES = {
-    **{name: ("primitives",) for name in (
-        "multiplier", "constant_multiplier", "narrow_multiplier", "leading_zeros", "left_shifter",
-        "round_saturate", "delay", "rom", "ram", "small_ram",
-    )},
-    **{name: (name,) for name in MODULES},
-    "inverse_sqrt_method": ("normalizer",),
-    "specular_power_method": ("shading_unit",),
-    "slope_multiplier": ("specular_power",),
-    "across": ("reflection",),
-    "versine_of_parts": ("reflection",),
-    "differences_unit": (),  # wiring; tests/test_sweep.py runs frames through it
-    "normal_interpolator": ("primitives", "phong_pipeline"),
-    "register_map": ("primitives", "phong_pipeline"),
-    "colour_channel": ("primitives", "shading_unit"),
-    "span_walker": ("control", "phong_pipeline"),
-    "pixel_fifo": ("control", "phong_pipeline"),
-    "phong_pipeline": ("phong_pipeline", *_OLDER),
-    "phong_unit": ("phong_pipeline",),
-    "intensity_code": ("intensity_code", "gouraud"),
-    "gouraud_unit": ("gouraud",),
-    "flat_unit": ("flat",),
-    "latency": ("primitives", *MODULES, "control", "phong_pipeline", *_OLDER),
+    "across": ("default", "reflection", "dot_first_18", *_SINGLE),
+    "colour_channel": (
+        *_SMALL, "shading_unit", "specular", "diffuse", "environment", "constant_ambient",
+        "constant_diffuse", *_SINGLE, "width_13",
+    ),
+    "constant_multiplier": ("primitives", *_SINGLE),
+    "delay": _SMALL,
+    "difference_normalizer": ("differences_18", "difference_normalizer", "differences_14"),
+    "differences_unit": ("differences_18", "differences_14"),
+    "flat_unit": ("flat 3", "flat 1", "flat"),
+    "gouraud_unit": ("gouraud 3", "gouraud 1", "gouraud"),
+    "intensity_code": ("gouraud 3", "intensity_code", "gouraud", "flat"),
+    "inverse_sqrt": ("default", "inverse_sqrt", "normalizer", "lines_32", "width_10"),
+    "inverse_sqrt_iterated": (
+        "table_32", "magic_2", "inverse_sqrt_iterated", "table_32_newton", "magic_0",
+    ),
+    "inverse_sqrt_method": ("default", "magic_2", "parabolas_8", "table_32", "differences_18"),
+    "inverse_sqrt_quadratic": ("parabolas_8", "inverse_sqrt_quadratic", "parabolas_32"),
+    "latency": (
+        *_SMALL, *TRIALS, *MODULES, "control", "phong_pipeline", "gouraud", "flat",
+    ),
+    "leading_zeros": (*_SMALL, "width_10"),
+    "left_shifter": (*_SMALL, "width_10"),
+    "multiplier": (*_SMALL, "width_10"),
+    "narrow_multiplier": (*_SMALL, "power_tables_32", "width_10"),
+    "newton_step": ("magic_2", "newton_step", "table_32_newton"),
+    "normal_hold": ("hold_unlit",),
+    "normal_interpolator": (
+        *_SMALL, "interpolate_x", "idle_step_bits", "narrow", "gouraud 3", "phong_pipeline",
+    ),
+    "normalizer": (
+        "default", "normalizer", "constant_shift", "two_sided", "dot_first_18", "dot_first_14",
+        "specular", *_SINGLE, "width_10", "interpolator_20",
+    ),
+    "phong_pipeline": ("default", *_OLDER, "differences_18", "narrow", "phong_pipeline"),
+    "phong_unit": (
+        "default", "hold_unlit", "not_normalized", "narrow", "interpolate_x", "interpolate_y",
+        "interpolate_z", "idle_material_bits", "idle_x_bits", "idle_y_bits", "constant_shift",
+        *_SINGLE, "phong_pipeline",
+    ),
+    "pixel_fifo": ("default", "control", "gouraud 3", "hold_unlit", "single", "phong_pipeline"),
+    "power_schlick": ("schlick_18", "power_schlick", "schlick_14"),
+    "power_squaring": ("squaring_18", "power_squaring", "squaring_14"),
+    "quadratic_interpolator": ("differences_18", "quadratic_interpolator"),
+    "ram": _SMALL,
+    "reflection": ("default", "reflection", *_SINGLE, "width_13"),
+    "register_map": (
+        *_SMALL, "specular", "power_function", "power_bypass", "log_octaves", "weight_function",
+        "diffuse", "environment", "channels", "two_sided", "constant_half_vector",
+        "constant_exponent", "constant_weight", "constant_ambient", "constant_diffuse", *_SINGLE,
+    ),
+    "rom": _SMALL,
+    "round_saturate": (*_SMALL, "width_13", "single"),
+    "shading_unit": (
+        "default", "shading_unit", "specular", "power_function", "weight_function",
+        "constant_exponent", "constant_weight", "channels", "dot_first_18", "differences_18",
+        *_SINGLE,
+    ),
+    "slope_multiplier": ("default", "specular_power", "power_tables_32", "width_10"),
+    "small_ram": _SMALL,
+    "span_guard": (
+        "narrow", "interpolate_x", "interpolate_y", "interpolate_z", "idle_step_bits",
+        "idle_material_bits", "idle_x_bits", "idle_y_bits", "constant_shift", *_SINGLE,
+    ),
+    "span_walker": (
+        "default", "control", "narrow", "idle_x_bits", "gouraud 3", "differences_18",
+        "phong_pipeline",
+    ),
+    "specular_cosine": ("power_function", "squaring_18", "specular_cosine", "single cosine"),
+    "specular_power": (
+        "default", "specular_power", "power_bypass", "log_octaves", "constant_exponent",
+        "single", "single glow", "power_tables_32", "width_10",
+    ),
+    "specular_power_method": ("default", "squaring_18", "schlick_18", "shading_unit", "single"),
+    "specular_weight": ("default", "specular_weight", "shading_unit", "width_13"),
+    "unnormalized": ("not_normalized", "unnormalized"),
+    "versine_of_parts": ("default", "reflection", "dot_first_18", "dot_first_14", "single"),
 }  # fmt: skip
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/|\"[^\"\n]*\"", re.DOTALL)
@@ -189,13 +255,10 @@ def mutants(path: Path, kinds: tuple[str, ...] = KINDS) -> list[Mutant]:
     return found
 
 
-def _compile_quickly() -> None:
-    """Build in a folder of our own, without optimization."""
-    build.BUILD = FOLDER
-    flags = build.CXX_FLAGS.replace("-O2", "-O0")  # a mutant runs but once
-    build.CXX_FLAGS = flags
-    library = build.runtime()
-    build.runtime = lambda: library
+#: What Verilator makes of each bench of the design as it is, as a hash.
+_OWN: dict[str, str] = {}
+#: Benches of a file, those first that killed a mutant of it last: its neighbour falls to the same.
+_ORDER: dict[str, list[str]] = {}
 
 
 def _out_of_time(*_):
@@ -211,50 +274,69 @@ def _start_worker(number) -> None:
     signal.signal(signal.SIGALRM, _out_of_time)
 
 
-def passes(name: str, rtl: Path, file: str = "") -> str:
-    """Why bench `name` rejects the design in `rtl`; empty if all its tests pass.
+def judge(name: str, rtl: Path, file: str = "") -> tuple[str, str]:
+    """The hash of bench `name` of the design in `rtl`, and why it rejects that; "" if it does not,
+    also where it is the very bench of the design as it is.
 
     file: the changed one; of the small modules, which share a bench, only its own tests run.
     """
+    shutil.rmtree(build.BUILD / "sim", ignore_errors=True)
+    signal.alarm(MUTANT_SECONDS)
+    made = ""
+    try:
+        if name in TRIALS:
+            bench = trial(name).bench(rtl)
+        else:
+            about = module_bench(name)
+            bench = Bench(about.top, about.config, about.sources, rtl, quick=True)
+        made = build.digest(*bench.verilate())
+        if made == _OWN.get(name):
+            return made, ""
+        if name in TRIALS:
+            said = trial(name).complaint(bench)
+            return made, f"fails: {said}" if said else ""
+        return made, _failing(name, bench, about.tests, file)
+    except BuildError:
+        return made, REFUSED
+    except TimeoutError:
+        return made, "hangs"
+    except (SimulationError, RuntimeError, SystemExit, OSError, ET.ParseError):
+        return made, "breaks the simulation"
+    finally:
+        signal.alarm(0)
+
+
+def _failing(name: str, bench: Bench, tests: str, file: str) -> str:
+    """Which of the cocotb tests of a module bench fails, if any."""
     only = {"ram.v": "memory", "small_ram.v": "memory"}.get(file, Path(file).stem)
     folder = build.BUILD / "run"
     shutil.rmtree(folder, ignore_errors=True)
-    shutil.rmtree(build.BUILD / "sim", ignore_errors=True)
-    signal.alarm(MUTANT_SECONDS)
-    try:
-        about = module_bench(name)
-        results = Bench(about.top, about.config, about.sources, rtl).run(
-            about.tests, folder, seed=SEED,
-            test_filter=rf"\.{only}\b" if name == "primitives" and file != "latency.vh" else None,
-            extra_env={
-                "PHONG_MODULE": name, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)
-            },
-        )  # fmt: skip
-        cases = ET.parse(results).getroot().findall(".//testcase")
-    except BuildError:
-        return "does not build"
-    except TimeoutError:
-        return "hangs"
-    except (RuntimeError, SystemExit, OSError, ET.ParseError):
-        return "breaks the simulation"
-    finally:
-        signal.alarm(0)
+    results = bench.run(
+        tests, folder, seed=SEED,
+        test_filter=rf"\.{only}\b" if name == "primitives" and file.endswith(".v") else None,
+        extra_env={"PHONG_MODULE": name, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)},
+    )  # fmt: skip
+    cases = ET.parse(results).getroot().findall(".//testcase")
     failed = [case.get("name") for case in cases if case.find("failure") is not None]
     return f"fails {failed[0]}" if failed else "" if cases else "runs no test"
 
 
-def killed_by(mutant: Mutant) -> str:
-    """The bench that kills `mutant` (None: the design as it is), and how; empty if none does."""
+def killed_by(mutant: Mutant) -> tuple[str, bool]:
+    """The bench that kills `mutant`, and how ("" if none does); whether any differs for it."""
     rtl = build.BUILD / "rtl"
     shutil.rmtree(rtl, ignore_errors=True)
     shutil.copytree(RTL, rtl)
-    if mutant:
-        (rtl / mutant.file).write_text(mutant.text())
-    for name in BENCHES[Path(mutant.file).stem if mutant else "latency"]:
-        why = passes(name, rtl, mutant.file if mutant else "latency.vh")
+    (rtl / mutant.file).write_text(mutant.text())
+    order = _ORDER.setdefault(mutant.file, list(BENCHES[Path(mutant.file).stem]))
+    seen = False
+    for name in order:
+        made, why = judge(name, rtl, mutant.file)
+        seen |= made != _OWN[name]
         if why:
-            return f"{name}: {why}"
-    return "lint: complains" if complaint(rtl) else ""
+            order.remove(name)
+            order.insert(0, name)
+            return f"{name}: {why}", seen
+    return ("lint: complains" if complaint(rtl) else ""), seen
 
 
 def complaint(rtl: Path) -> str:
@@ -290,7 +372,7 @@ def _record(chosen: list[Mutant], outcomes: list[str], everything: list[Mutant])
             why for m, why in zip(chosen, outcomes, strict=True) if (m.file, m.kind) == (file, kind)
         ]
         total = sum((m.file, m.kind) == (file, kind) for m in everything)
-        built = sum(why.endswith(("does not build", "complains")) for why in ours)
+        built = sum(why.endswith((REFUSED, "complains")) for why in ours)
         found.setdefault(file, {})[kind] = {
             "mutants": total, "refused": built, "killed": len(ours) - built - ours.count(""),
             "survived": ours.count(""), "equivalent": total - len(ours),
@@ -362,26 +444,38 @@ def main() -> int:
         print(f"{len(chosen)} mutants, {len(everything) - len(chosen)} left out")
         return 0
 
-    _compile_quickly()
     os.environ["COCOTB_MAX_FAILURES"] = "1"
     os.environ["SIM_CMD_PREFIX"] = f"timeout -k 1 {SIMULATION_SECONDS}"
     survivors: list[Mutant] = []
     outcomes: list[str] = []
     begin = time.monotonic()
     context = multiprocessing.get_context("fork")
-    with context.Pool(arguments.jobs, _start_worker, (context.Value("i", 0),)) as pool:
-        # A bench that rejects the design itself would kill every mutant, and mean nothing.
-        used = {name for m in chosen for name in BENCHES[Path(m.file).stem]}
-        for name, why in zip(used, pool.starmap(passes, [(n, RTL) for n in used]), strict=True):
+
+    def pool():
+        return context.Pool(arguments.jobs, _start_worker, (context.Value("i", 0),))
+
+    build.runtime()  # once, before all need it
+    # A bench that rejects the design itself would kill every mutant, and mean nothing.
+    used = list(dict.fromkeys(name for m in chosen for name in BENCHES[Path(m.file).stem]))
+    for name in used:
+        if name in TRIALS:
+            trial(name).expected  # noqa: B018 - known to all workers
+    with pool() as workers:
+        for name, (made, why) in zip(
+            used, workers.starmap(judge, [(n, RTL) for n in used], 1), strict=True
+        ):
             if why:
                 print(f"mutate: {name} rejects the design itself: {why}", file=sys.stderr)
                 return 2
-        for mutant, why in zip(chosen, pool.imap(killed_by, chosen), strict=True):
+            _OWN[name] = made
+    with pool() as workers:
+        for mutant, (why, seen) in zip(chosen, workers.imap(killed_by, chosen), strict=True):
             outcomes.append(why)
             if not why:
                 survivors.append(mutant)
                 print(f"SURVIVED {mutant.file}:{mutant.line}: {mutant.old} -> {mutant.new}: "
-                      f"{mutant.key.partition(': ')[2]}", flush=True)  # fmt: skip
+                      f"{mutant.key.partition(': ')[2]}{'' if seen else ' (no bench differs)'}",
+                      flush=True)  # fmt: skip
             done = len(outcomes)
             left = (time.monotonic() - begin) / done * (len(chosen) - done)
             print(f"{done}/{len(chosen)} mutants, {len(survivors)} survived, "
