@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import argparse
 import datetime
+import json
 import logging
 import multiprocessing
 import os
@@ -41,7 +42,7 @@ from tests.modules.trials import TRIALS, trial
 
 EXPLAINED = ROOT / "scripts" / "equivalent_mutants.txt"
 FOLDER = ROOT / "build" / "mutants"
-SURVIVORS = FOLDER / "survivors.txt"
+OUTCOMES = FOLDER / "outcomes.json"
 SEED = 75
 KINDS = ("constant", "operator")
 SIMULATION_SECONDS = 40
@@ -58,7 +59,9 @@ _METHODS = (
     "parabolas_8", "squaring_18", "schlick_18",
 )  # fmt: skip
 BENCHES = {
-    "across": ("default", "reflection", "dot_first_18", *_SINGLE),
+    "across": (
+        "default", "reflection", "dot_first_18", "constant_half_vector", "single", "single grey",
+    ),
     "colour_channel": (
         *_SMALL, "shading_unit", "specular", "diffuse", "environment", "constant_ambient",
         "constant_diffuse", *_SINGLE, "width_13",
@@ -170,6 +173,11 @@ class Mutant:
         """The file with the change."""
         text = (RTL / self.file).read_text()
         return text[: self.offset] + self.new + text[self.offset + len(self.old) :]
+
+    @property
+    def name(self) -> str:
+        """What names it among all: kind, key, and the text that it is a change of."""
+        return f"{self.kind} {build.digest(RTL / self.file)} {self.key}"
 
     @property
     def line(self) -> int:
@@ -363,19 +371,26 @@ def explained() -> dict[str, str]:
     return table
 
 
-def _record(chosen: list[Mutant], outcomes: list[str], everything: list[Mutant]) -> None:
-    """Put what was found into the record, file by file; the other files' results stay."""
+def _outcomes() -> dict[str, str]:
+    """{name of a mutant: what killed it, or ""} of all runs so far."""
+    return json.loads(OUTCOMES.read_text()) if OUTCOMES.is_file() else {}
+
+
+def _record(everything: list[Mutant], known: dict[str, str]) -> None:
+    """Put what was found into the record, file by file, where all mutants of a file have been
+    tried; the other files' results stay."""
     found = (records.load("mutate") or {}).get("files", {})
     found = {name: of for name, of in found.items() if (RTL / name).is_file()}
-    for file, kind in {(m.file, m.kind) for m in everything}:
-        ours = [
-            why for m, why in zip(chosen, outcomes, strict=True) if (m.file, m.kind) == (file, kind)
-        ]
-        total = sum((m.file, m.kind) == (file, kind) for m in everything)
+    outcomes = _outcomes()
+    for file, kind in sorted({(m.file, m.kind) for m in everything}):
+        all_of = [m for m in everything if (m.file, m.kind) == (file, kind)]
+        ours = [outcomes.get(m.name) for m in all_of if m.key not in known]
+        if None in ours:
+            continue
         built = sum(why.endswith((REFUSED, "complains")) for why in ours)
         found.setdefault(file, {})[kind] = {
-            "mutants": total, "refused": built, "killed": len(ours) - built - ours.count(""),
-            "survived": ours.count(""), "equivalent": total - len(ours),
+            "mutants": len(all_of), "refused": built, "killed": len(ours) - built - ours.count(""),
+            "survived": ours.count(""), "equivalent": len(all_of) - len(ours),
             "date": datetime.date.today().isoformat(), "commit": records.commit(),
         }  # fmt: skip
     rows = []
@@ -409,9 +424,55 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--kind", choices=KINDS, help="mutants of this kind only")
     parser.add_argument("--sample", type=int, metavar="N", help="N mutants at random")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="mutants at a time")
-    parser.add_argument("--again", action="store_true", help="the survivors of the last run only")
+    parser.add_argument("--again", action="store_true", help="not those killed before")
     parser.add_argument("--list", action="store_true", help="show the mutants, run nothing")
     return parser.parse_args()
+
+
+def _pool(jobs: int):
+    context = multiprocessing.get_context("fork")
+    return context.Pool(jobs, _start_worker, (context.Value("i", 0),))
+
+
+def _know_the_design(used: list[str], jobs: int) -> str:
+    """Run all benches in `used` on the design itself; returns a complaint, or "".
+
+    A bench that rejects the design would kill every mutant, and mean nothing.
+    """
+    build.runtime()  # once, before all need it
+    for name in used:
+        if name in TRIALS:
+            _ = trial(name).expected  # before the workers start, so that all have it
+    with _pool(jobs) as workers:
+        found = workers.starmap(judge, [(name, RTL) for name in used], 1)
+    for name, (made, why) in zip(used, found, strict=True):
+        if why:
+            return f"{name} rejects the design itself: {why}"
+        _OWN[name] = made
+    return ""
+
+
+def _campaign(chosen: list[Mutant], jobs: int) -> list[Mutant]:
+    """Try all of `chosen`, keeping what comes of each; returns the survivors. Shows progress."""
+    survivors: list[Mutant] = []
+    tried = _outcomes()
+    begin = time.monotonic()
+    with _pool(jobs) as workers:
+        for done, (why, seen) in enumerate(workers.imap(killed_by, chosen), 1):
+            mutant = chosen[done - 1]
+            tried[mutant.name] = why
+            if not why:
+                survivors.append(mutant)
+                print(f"SURVIVED {mutant.file}:{mutant.line}: {mutant.old} -> {mutant.new}: "
+                      f"{mutant.key.partition(': ')[2]}{'' if seen else ' (no bench differs)'}",
+                      flush=True)  # fmt: skip
+            left = (time.monotonic() - begin) / done * (len(chosen) - done)
+            print(f"{done}/{len(chosen)} mutants, {len(survivors)} survived, "
+                  f"{left / 60:.0f} min left; {mutant.file}:{mutant.line} {why or 'survived'}",
+                  file=sys.stderr, flush=True)  # fmt: skip
+            if done % 50 == 0 or done == len(chosen):
+                OUTCOMES.write_text(json.dumps(tried, indent=0))
+    return survivors
 
 
 def main() -> int:
@@ -427,15 +488,13 @@ def main() -> int:
         files = [by_name[name] for name in arguments.files]
     kinds = (arguments.kind,) if arguments.kind else KINDS
     everything = [m for path in files for m in mutants(path, kinds)]
-    stale = set(known) - {m.key for m in everything}
-    if arguments.files or arguments.kind:
-        stale = set()
-    for key in sorted(stale):
-        print(f"explained, but no mutant: {key}")
+    if not (arguments.files or arguments.kind):
+        for key in sorted(set(known) - {m.key for m in everything}):
+            print(f"explained, but no mutant: {key}")
     chosen = [m for m in everything if m.key not in known]
     if arguments.again:
-        last = set(SURVIVORS.read_text().splitlines()) if SURVIVORS.is_file() else set()
-        chosen = [m for m in chosen if m.key in last]
+        tried = _outcomes()
+        chosen = [m for m in chosen if not tried.get(m.name)]
     if arguments.sample and arguments.sample < len(chosen):
         chosen = random.Random(SEED).sample(chosen, arguments.sample)
     if arguments.list:
@@ -446,44 +505,13 @@ def main() -> int:
 
     os.environ["COCOTB_MAX_FAILURES"] = "1"
     os.environ["SIM_CMD_PREFIX"] = f"timeout -k 1 {SIMULATION_SECONDS}"
-    survivors: list[Mutant] = []
-    outcomes: list[str] = []
-    begin = time.monotonic()
-    context = multiprocessing.get_context("fork")
-
-    def pool():
-        return context.Pool(arguments.jobs, _start_worker, (context.Value("i", 0),))
-
-    build.runtime()  # once, before all need it
-    # A bench that rejects the design itself would kill every mutant, and mean nothing.
     used = list(dict.fromkeys(name for m in chosen for name in BENCHES[Path(m.file).stem]))
-    for name in used:
-        if name in TRIALS:
-            trial(name).expected  # noqa: B018 - known to all workers
-    with pool() as workers:
-        for name, (made, why) in zip(
-            used, workers.starmap(judge, [(n, RTL) for n in used], 1), strict=True
-        ):
-            if why:
-                print(f"mutate: {name} rejects the design itself: {why}", file=sys.stderr)
-                return 2
-            _OWN[name] = made
-    with pool() as workers:
-        for mutant, (why, seen) in zip(chosen, workers.imap(killed_by, chosen), strict=True):
-            outcomes.append(why)
-            if not why:
-                survivors.append(mutant)
-                print(f"SURVIVED {mutant.file}:{mutant.line}: {mutant.old} -> {mutant.new}: "
-                      f"{mutant.key.partition(': ')[2]}{'' if seen else ' (no bench differs)'}",
-                      flush=True)  # fmt: skip
-            done = len(outcomes)
-            left = (time.monotonic() - begin) / done * (len(chosen) - done)
-            print(f"{done}/{len(chosen)} mutants, {len(survivors)} survived, "
-                  f"{left / 60:.0f} min left; {mutant.file}:{mutant.line} {why or 'survived'}",
-                  file=sys.stderr, flush=True)  # fmt: skip
-    if not (arguments.sample or arguments.again):
-        _record(chosen, outcomes, everything)
-    SURVIVORS.write_text("".join(f"{m.key}\n" for m in survivors))
+    if said := _know_the_design(used, arguments.jobs):
+        print(f"mutate: {said}", file=sys.stderr)
+        return 2
+    survivors = _campaign(chosen, arguments.jobs)
+    if not arguments.sample:
+        _record(everything, known)
     print(
         f"{len(chosen)} mutants, {len(chosen) - len(survivors)} killed, "
         f"{len(survivors)} survived; {len(everything) - len(chosen)} left out or explained"
