@@ -1,7 +1,7 @@
 """Tests of the tests: `python -m scripts.mutate`, with --help for the options.
 
 Two kinds of mutants of rtl/, one change each. Constants: every number that is written by hand,
-changed by one (one bit of a sized literal is flipped). Operators: every operator for its
+changed by one (of a sized literal the lowest bit is flipped, or the highest). Operators: every operator for its
 neighbour, every condition negated, every choice turned round, every register held. The trials and
 module tests of the file run on the changed copy: on builds with what the default configuration
 leaves out, too. A mutant is killed if it does not build without a warning, fails a test or hangs; a
@@ -21,6 +21,7 @@ import multiprocessing
 import os
 import random
 import re
+import resource
 import shutil
 import signal
 import sys
@@ -46,12 +47,14 @@ OUTCOMES = FOLDER / "outcomes.json"
 SEED = 75
 KINDS = ("constant", "operator")
 SIMULATION_SECONDS = 40
-MUTANT_SECONDS = 150
+BENCH_SECONDS = 60
+MEMORY = 4 << 30  # bytes: some mutants have Verilator unroll a loop without end
 REFUSED = "does not build"
 
 #: Module benches and trials (tests/modules/trials.py) that could notice a change of a file. Those
 #: of the default configuration come first, for most changes fail them.
 _SMALL = ("default", "primitives")
+_MEMORIES = ("ram", "small_ram")  # whose tests are the same
 _SINGLE = ("single", "single grey", "single matte", "single cosine", "single glow")
 _OLDER = ("gouraud 3", "gouraud 1", "flat 3", "flat 1", "gouraud", "flat")
 _METHODS = (
@@ -209,7 +212,7 @@ def _constants(code: str) -> Iterator[Change]:
             radix = {"b": 2, "o": 8, "d": 10, "h": 16}[base[-1].lower()]
             value = int(digits.replace("_", ""), radix)
             spelled = {2: "b", 8: "o", 10: "d", 16: "x"}[radix]
-            for bit in range(int(size or 32)):
+            for bit in sorted({0, int(size or 32) - 1}):
                 yield m.start(3), digits, format(value ^ (1 << bit), spelled)
 
 
@@ -270,6 +273,7 @@ _ORDER: dict[str, list[str]] = {}
 
 
 def _out_of_time(*_):
+    os.killpg(0, signal.SIGUSR1)  # whatever runs for us; we ourselves let it pass
     raise TimeoutError
 
 
@@ -279,23 +283,33 @@ def _start_worker(number) -> None:
         number.value += 1
         build.BUILD = FOLDER / f"worker{number.value}"
     logging.disable(logging.CRITICAL)
+    os.setpgrp()
+    signal.signal(signal.SIGUSR1, lambda *_: None)
     signal.signal(signal.SIGALRM, _out_of_time)
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
 
 
-def judge(name: str, rtl: Path, file: str = "") -> tuple[str, str]:
+def _benches(file: str) -> list[str]:
+    """Names of the benches for `file`: of the small modules "primitives/<module>" has only one."""
+    stem, _, suffix = file.rpartition(".")
+    return [
+        f"{name}/{stem}" if (name, suffix) == ("primitives", "v") else name
+        for name in BENCHES[stem]
+    ]
+
+
+def judge(name: str, rtl: Path) -> tuple[str, str]:
     """The hash of bench `name` of the design in `rtl`, and why it rejects that; "" if it does not,
-    also where it is the very bench of the design as it is.
-
-    file: the changed one; of the small modules, which share a bench, only its own tests run.
-    """
+    also where it is the very bench of the design as it is."""
     shutil.rmtree(build.BUILD / "sim", ignore_errors=True)
-    signal.alarm(MUTANT_SECONDS)
+    signal.alarm(BENCH_SECONDS)
     made = ""
     try:
         if name in TRIALS:
             bench = trial(name).bench(rtl)
         else:
-            about = module_bench(name)
+            base, _, small = name.partition("/")
+            about = module_bench(base, _MEMORIES if small in _MEMORIES else (small,) * bool(small))
             bench = Bench(about.top, about.config, about.sources, rtl, quick=True)
         made = build.digest(*bench.verilate())
         if made == _OWN.get(name):
@@ -303,7 +317,7 @@ def judge(name: str, rtl: Path, file: str = "") -> tuple[str, str]:
         if name in TRIALS:
             said = trial(name).complaint(bench)
             return made, f"fails: {said}" if said else ""
-        return made, _failing(name, bench, about.tests, file)
+        return made, _failing(base, bench, about.tests, small)
     except BuildError:
         return made, REFUSED
     except TimeoutError:
@@ -314,14 +328,13 @@ def judge(name: str, rtl: Path, file: str = "") -> tuple[str, str]:
         signal.alarm(0)
 
 
-def _failing(name: str, bench: Bench, tests: str, file: str) -> str:
+def _failing(name: str, bench: Bench, tests: str, small: str) -> str:
     """Which of the cocotb tests of a module bench fails, if any."""
-    only = {"ram.v": "memory", "small_ram.v": "memory"}.get(file, Path(file).stem)
+    only = "memory" if small in _MEMORIES else small
     folder = build.BUILD / "run"
     shutil.rmtree(folder, ignore_errors=True)
     results = bench.run(
-        tests, folder, seed=SEED,
-        test_filter=rf"\.{only}\b" if name == "primitives" and file.endswith(".v") else None,
+        tests, folder, seed=SEED, test_filter=rf"\.{only}\b" if small else None,
         extra_env={"PHONG_MODULE": name, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)},
     )  # fmt: skip
     cases = ET.parse(results).getroot().findall(".//testcase")
@@ -335,10 +348,10 @@ def killed_by(mutant: Mutant) -> tuple[str, bool]:
     shutil.rmtree(rtl, ignore_errors=True)
     shutil.copytree(RTL, rtl)
     (rtl / mutant.file).write_text(mutant.text())
-    order = _ORDER.setdefault(mutant.file, list(BENCHES[Path(mutant.file).stem]))
+    order = _ORDER.setdefault(mutant.file, _benches(mutant.file))
     seen = False
     for name in order:
-        made, why = judge(name, rtl, mutant.file)
+        made, why = judge(name, rtl)
         seen |= made != _OWN[name]
         if why:
             order.remove(name)
@@ -505,7 +518,7 @@ def main() -> int:
 
     os.environ["COCOTB_MAX_FAILURES"] = "1"
     os.environ["SIM_CMD_PREFIX"] = f"timeout -k 1 {SIMULATION_SECONDS}"
-    used = list(dict.fromkeys(name for m in chosen for name in BENCHES[Path(m.file).stem]))
+    used = list(dict.fromkeys(name for m in chosen for name in _benches(m.file)))
     if said := _know_the_design(used, arguments.jobs):
         print(f"mutate: {said}", file=sys.stderr)
         return 2
