@@ -1,12 +1,13 @@
 """Tests of the tests: `python -m scripts.mutate`, with --help for the options.
 
 Two kinds of mutants of rtl/, one change each. Constants: every number that is written by hand,
-changed by one (of a sized literal the lowest bit is flipped, or the highest). Operators: every operator for its
-neighbour, every condition negated, every choice turned round, every register held. The trials and
-module tests of the file run on the changed copy: on builds with what the default configuration
-leaves out, too. A mutant is killed if it does not build without a warning, fails a test or hangs; a
-bench of which Verilator makes the same program as before is not run. Survivors are printed with
-file and line; those in scripts/equivalent_mutants.txt are explained there and do not count.
+changed by one (of a sized literal the lowest bit is flipped, or the highest). Operators: every
+operator for its neighbour, every condition negated, every choice turned round, every register held.
+The trials and module tests of the file run on the changed copy: on builds with what the default
+configuration leaves out, too. A mutant is killed if it does not build without a warning, fails a
+test or hangs; a bench of which Verilator makes the same program as before is not run. Survivors are
+printed with file and line; those in scripts/equivalent_mutants.txt are explained there and do not
+count.
 
 Exit code: 0; 1 if a mutant survived that is not explained; 2 if the command line is wrong.
 """
