@@ -382,6 +382,7 @@ def _method(name: str) -> Trial:
     if config.normal_method == "differences":
         frames = [front_end(load_scene(*scene), config).frame for scene in SCENES]
         frames.append(dataclasses.replace(frames[1], two_sided=True))
+        frames[1].spans["start"][5:9] = frames[1].spans["step"][5:9] = 0  # no direction at all
     else:
         frames = [in_words_of(config, frame) for frame in (
             plain(), dataclasses.replace(plain(SEED + 1), two_sided=False))]  # fmt: skip
