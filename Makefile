@@ -68,6 +68,7 @@ help: ## this list
 	@echo '                FILES="a b"     of these modules only'
 	@echo '                KIND=operator   or KIND=constant'
 	@echo '                SAMPLE=20       so many at random'
+	@echo '                AGAIN=1         not those that were killed before and did not change'
 	@echo 'make hardware the README'"'"'s table of hardware, proofs and tests, from the last results'
 	@echo 'make formal   prove flow control and the interpolators, and that broken designs fail (minutes)'
 	@echo 'make setup    install the pinned packages into .venv; the other targets do this by themselves'
@@ -149,7 +150,7 @@ waves: setup
 
 mutate: setup
 	@$(PYTHON) -m scripts.mutate $(if $(FILES),--files $(FILES)) $(if $(KIND),--kind $(KIND)) \
-	  $(if $(SAMPLE),--sample $(SAMPLE))
+	  $(if $(SAMPLE),--sample $(SAMPLE)) $(if $(AGAIN),--again)
 
 icarus: setup
 	@$(PYTHON) -m scripts.icarus

@@ -15,6 +15,7 @@ import numpy as np
 
 from .config import DEFAULT, TECHNIQUES, Config
 from .frame import Frame
+from .registers import FIELDS
 from .twin.normalizer import leading_zeros
 from .twin.phong_pipeline import BLOCK, interpolate
 from .twin.span_walker import span_walker
@@ -99,6 +100,47 @@ def unsupported_spans(frame: Frame, built: Config) -> np.ndarray:
             normal, _ = interpolate(spans, span, k, full)
             bad[span[leading_zeros(normal, full) != built.constant_shift[0]]] = True
     return bad
+
+
+def unsupported_write(address: int, word: int, built: Config) -> bool:
+    """Whether the RTL of `built` flags a write of `word` to `address` (see rtl/register_map.v)."""
+    if built.technique != "phong":
+        return False
+    index = address & ((1 << built.weight_index_bits) - 1)
+    kind = address >> (built.material_bits + built.weight_index_bits)
+    code, step = word & built.coefficient.max, word >> built.coefficient.bits
+    if kind == 0:  # an interval of W(i)
+        if not built.specular:
+            return word != 0
+        return (not built.weight_function and step != 0) or code not in (
+            built.constant_weight or (code,)
+        )
+    if index == FIELDS["control"]:
+        return not built.two_sided and bool(word & 1)
+    for field, constant in zip(("half_x", "half_z"), built.constant_half_vector, strict=False):
+        if index == FIELDS[field]:
+            return (word - constant) % (1 << built.half_vector.bits) != 0
+    if index == FIELDS["exponent"]:
+        n, one = word & built.exponent.max, built.exponent.one
+        if not built.specular:
+            return False  # of no use
+        if built.constant_exponent:
+            return (n,) != tuple(built.constant_exponent)
+        if not built.power_function:
+            return n != one
+        if n == one:
+            return not built.power_bypass
+        return not built.log_octaves and n < vanishing_exponent(built)
+    for field, there, constant in (
+        ("ambient", built.environment, built.constant_ambient),
+        ("diffuse", built.diffuse, built.constant_diffuse),
+    ):
+        channel = index - FIELDS[field]
+        if 0 <= channel < 3:
+            if channel and built.channels < 3:
+                return True
+            return (not there and code != 0) or bool(constant and code != constant[channel])
+    return False
 
 
 def _idle(largest: int, bits: int) -> int:

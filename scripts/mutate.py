@@ -1,11 +1,13 @@
 """Tests of the tests: `python -m scripts.mutate`, with --help for the options.
 
 Two kinds of mutants of rtl/, one change each. Constants: every number that is written by hand,
-changed by one (one bit of a sized literal is flipped). Operators: every operator for its
-neighbour, every condition negated, every choice turned round, every register held. The module
-tests run on the changed copy. A mutant is killed if it does not build without a warning, fails a
-test or hangs. Survivors are printed with file and line; those in scripts/equivalent_mutants.txt
-are explained there and do not count.
+changed by one (of a sized literal the lowest bit is flipped, or the highest). Operators: every
+operator for its neighbour, every condition negated, every choice turned round, every register held.
+The trials and module tests of the file run on the changed copy: on builds with what the default
+configuration leaves out, too. A mutant is killed if it does not build without a warning, fails a
+test or hangs; a bench of which Verilator makes the same program as before is not run. Survivors are
+printed with file and line; those in scripts/equivalent_mutants.txt are explained there and do not
+count.
 
 Exit code: 0; 1 if a mutant survived that is not explained; 2 if the command line is wrong.
 """
@@ -14,11 +16,13 @@ from __future__ import annotations
 
 import argparse
 import datetime
+import json
 import logging
 import multiprocessing
 import os
 import random
 import re
+import resource
 import shutil
 import signal
 import sys
@@ -34,41 +38,110 @@ from scripts.lint import CONFIGS
 from sim import build
 from sim.benches import module_bench
 from sim.build import ROOT, RTL, Bench, BuildError
+from sim.run_frame import SimulationError
 from sim.units import MODULES
+from tests.modules.trials import TRIALS, trial
 
 EXPLAINED = ROOT / "scripts" / "equivalent_mutants.txt"
 FOLDER = ROOT / "build" / "mutants"
-SURVIVORS = FOLDER / "survivors.txt"
+OUTCOMES = FOLDER / "outcomes.json"
 SEED = 75
 KINDS = ("constant", "operator")
 SIMULATION_SECONDS = 40
-MUTANT_SECONDS = 150
+BENCH_SECONDS = 60
+MEMORY = 4 << 30  # bytes: some mutants have Verilator unroll a loop without end
+REFUSED = "does not build"
 
-#: Benches that could notice a change of a file, the cheapest first.
-_OLDER = ("gouraud", "flat")
+#: Module benches and trials (tests/modules/trials.py) that could notice a change of a file. Those
+#: of the default configuration come first, for most changes fail them.
+_SMALL = ("default", "primitives")
+_MEMORIES = ("ram", "small_ram")  # whose tests are the same
+_SINGLE = ("single", "single grey", "single matte", "single cosine", "single glow")
+_OLDER = ("gouraud 3", "gouraud 1", "flat 3", "flat 1", "gouraud", "flat")
+_METHODS = (
+    "not_normalized", "dot_first_18", "differences_18", "table_32_newton", "magic_2",
+    "parabolas_8", "squaring_18", "schlick_18",
+)  # fmt: skip
 BENCHES = {
-    **{name: ("primitives",) for name in (
-        "multiplier", "constant_multiplier", "narrow_multiplier", "leading_zeros", "left_shifter",
-        "round_saturate", "delay", "rom", "ram", "small_ram",
-    )},
-    **{name: (name,) for name in MODULES},
-    "inverse_sqrt_method": ("normalizer",),
-    "specular_power_method": ("shading_unit",),
-    "slope_multiplier": ("specular_power",),
-    "across": ("reflection",),
-    "versine_of_parts": ("reflection",),
-    "differences_unit": (),  # wiring; tests/test_sweep.py runs frames through it
-    "normal_interpolator": ("primitives", "phong_pipeline"),
-    "register_map": ("primitives", "phong_pipeline"),
-    "colour_channel": ("primitives", "shading_unit"),
-    "span_walker": ("control", "phong_pipeline"),
-    "pixel_fifo": ("control", "phong_pipeline"),
-    "phong_pipeline": ("phong_pipeline", *_OLDER),
-    "phong_unit": ("phong_pipeline",),
-    "intensity_code": ("intensity_code", "gouraud"),
-    "gouraud_unit": ("gouraud",),
-    "flat_unit": ("flat",),
-    "latency": ("primitives", *MODULES, "control", "phong_pipeline", *_OLDER),
+    "across": (
+        "default", "reflection", "dot_first_18", "constant_half_vector", "single", "single grey",
+    ),
+    "colour_channel": (
+        *_SMALL, "shading_unit", "specular", "diffuse", "environment", "constant_ambient",
+        "constant_diffuse", *_SINGLE, "width_13",
+    ),
+    "constant_multiplier": ("primitives", *_SINGLE),
+    "delay": _SMALL,
+    "difference_normalizer": ("differences_18", "difference_normalizer", "differences_14"),
+    "differences_unit": ("differences_18", "differences_14"),
+    "flat_unit": ("flat 3", "flat 1", "flat"),
+    "gouraud_unit": ("gouraud 3", "gouraud 1", "gouraud"),
+    "intensity_code": ("gouraud 3", "intensity_code", "gouraud", "flat"),
+    "inverse_sqrt": ("default", "inverse_sqrt", "normalizer", "lines_32", "width_10"),
+    "inverse_sqrt_iterated": (
+        "table_32", "magic_2", "inverse_sqrt_iterated", "table_32_newton", "magic_0",
+    ),
+    "inverse_sqrt_method": ("default", "magic_2", "parabolas_8", "table_32", "differences_18"),
+    "inverse_sqrt_quadratic": ("parabolas_8", "inverse_sqrt_quadratic", "parabolas_32"),
+    "latency": (
+        *_SMALL, *TRIALS, *MODULES, "control", "phong_pipeline", "gouraud", "flat",
+    ),
+    "leading_zeros": (*_SMALL, "width_10"),
+    "left_shifter": (*_SMALL, "width_10"),
+    "multiplier": (*_SMALL, "width_10"),
+    "narrow_multiplier": (*_SMALL, "power_tables_32", "width_10"),
+    "newton_step": ("magic_2", "newton_step", "table_32_newton"),
+    "normal_hold": ("hold_unlit",),
+    "normal_interpolator": (
+        *_SMALL, "interpolate_x", "idle_step_bits", "narrow", "gouraud 3", "phong_pipeline",
+    ),
+    "normalizer": (
+        "default", "normalizer", "constant_shift", "two_sided", "dot_first_18", "dot_first_14",
+        "specular", *_SINGLE, "width_10", "interpolator_20",
+    ),
+    "phong_pipeline": ("default", *_OLDER, "differences_18", "narrow", "phong_pipeline"),
+    "phong_unit": (
+        "default", "hold_unlit", "not_normalized", "narrow", "interpolate_x", "interpolate_y",
+        "interpolate_z", "idle_material_bits", "idle_x_bits", "idle_y_bits", "constant_shift",
+        *_SINGLE, "phong_pipeline",
+    ),
+    "pixel_fifo": ("default", "control", "gouraud 3", "hold_unlit", "single", "phong_pipeline"),
+    "power_schlick": ("schlick_18", "power_schlick", "schlick_14"),
+    "power_squaring": ("squaring_18", "power_squaring", "squaring_14"),
+    "quadratic_interpolator": ("differences_18", "quadratic_interpolator"),
+    "ram": _SMALL,
+    "reflection": ("default", "reflection", *_SINGLE, "width_13"),
+    "register_map": (
+        *_SMALL, "specular", "power_function", "power_bypass", "log_octaves", "weight_function",
+        "diffuse", "environment", "channels", "two_sided", "constant_half_vector",
+        "constant_exponent", "constant_weight", "constant_ambient", "constant_diffuse", *_SINGLE,
+    ),
+    "rom": _SMALL,
+    "round_saturate": (*_SMALL, "width_13", "single"),
+    "shading_unit": (
+        "default", "shading_unit", "specular", "power_function", "weight_function",
+        "constant_exponent", "constant_weight", "channels", "dot_first_18", "differences_18",
+        *_SINGLE,
+    ),
+    "slope_multiplier": ("default", "specular_power", "power_tables_32", "width_10"),
+    "small_ram": _SMALL,
+    "span_guard": (
+        "narrow", "interpolate_x", "interpolate_y", "interpolate_z", "idle_step_bits",
+        "idle_material_bits", "idle_x_bits", "idle_y_bits", "constant_shift", *_SINGLE,
+    ),
+    "span_walker": (
+        "default", "control", "narrow", "idle_x_bits", "gouraud 3", "differences_18",
+        "phong_pipeline",
+    ),
+    "specular_cosine": ("power_function", "squaring_18", "specular_cosine", "single cosine"),
+    "specular_power": (
+        "default", "specular_power", "power_bypass", "log_octaves", "constant_exponent",
+        "single", "single glow", "power_tables_32", "width_10",
+    ),
+    "specular_power_method": ("default", "squaring_18", "schlick_18", "shading_unit", "single"),
+    "specular_weight": ("default", "specular_weight", "shading_unit", "width_13"),
+    "unnormalized": ("not_normalized", "unnormalized"),
+    "versine_of_parts": ("default", "reflection", "dot_first_18", "dot_first_14", "single"),
 }  # fmt: skip
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/|\"[^\"\n]*\"", re.DOTALL)
@@ -106,6 +179,11 @@ class Mutant:
         return text[: self.offset] + self.new + text[self.offset + len(self.old) :]
 
     @property
+    def name(self) -> str:
+        """What names it among all: kind, key, and the text that it is a change of."""
+        return f"{self.kind} {build.digest(RTL / self.file)} {self.key}"
+
+    @property
     def line(self) -> int:
         """Number of its line."""
         return (RTL / self.file).read_text().count("\n", 0, self.offset) + 1
@@ -135,7 +213,7 @@ def _constants(code: str) -> Iterator[Change]:
             radix = {"b": 2, "o": 8, "d": 10, "h": 16}[base[-1].lower()]
             value = int(digits.replace("_", ""), radix)
             spelled = {2: "b", 8: "o", 10: "d", 16: "x"}[radix]
-            for bit in range(int(size or 32)):
+            for bit in sorted({0, int(size or 32) - 1}):
                 yield m.start(3), digits, format(value ^ (1 << bit), spelled)
 
 
@@ -189,16 +267,14 @@ def mutants(path: Path, kinds: tuple[str, ...] = KINDS) -> list[Mutant]:
     return found
 
 
-def _compile_quickly() -> None:
-    """Build in a folder of our own, without optimization."""
-    build.BUILD = FOLDER
-    flags = build.CXX_FLAGS.replace("-O2", "-O0")  # a mutant runs but once
-    build.CXX_FLAGS = flags
-    library = build.runtime()
-    build.runtime = lambda: library
+#: What Verilator makes of each bench of the design as it is, as a hash.
+_OWN: dict[str, str] = {}
+#: Benches of a file, those first that killed a mutant of it last: its neighbour falls to the same.
+_ORDER: dict[str, list[str]] = {}
 
 
 def _out_of_time(*_):
+    os.killpg(0, signal.SIGUSR1)  # whatever runs for us; we ourselves let it pass
     raise TimeoutError
 
 
@@ -208,53 +284,81 @@ def _start_worker(number) -> None:
         number.value += 1
         build.BUILD = FOLDER / f"worker{number.value}"
     logging.disable(logging.CRITICAL)
+    os.setpgrp()
+    signal.signal(signal.SIGUSR1, lambda *_: None)
     signal.signal(signal.SIGALRM, _out_of_time)
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
 
 
-def passes(name: str, rtl: Path, file: str = "") -> str:
-    """Why bench `name` rejects the design in `rtl`; empty if all its tests pass.
+def _benches(file: str) -> list[str]:
+    """Names of the benches for `file`: of the small modules "primitives/<module>" has only one."""
+    stem, _, suffix = file.rpartition(".")
+    return [
+        f"{name}/{stem}" if (name, suffix) == ("primitives", "v") else name
+        for name in BENCHES[stem]
+    ]
 
-    file: the changed one; of the small modules, which share a bench, only its own tests run.
-    """
-    only = {"ram.v": "memory", "small_ram.v": "memory"}.get(file, Path(file).stem)
-    folder = build.BUILD / "run"
-    shutil.rmtree(folder, ignore_errors=True)
+
+def judge(name: str, rtl: Path) -> tuple[str, str]:
+    """The hash of bench `name` of the design in `rtl`, and why it rejects that; "" if it does not,
+    also where it is the very bench of the design as it is."""
     shutil.rmtree(build.BUILD / "sim", ignore_errors=True)
-    signal.alarm(MUTANT_SECONDS)
+    signal.alarm(BENCH_SECONDS)
+    made = ""
     try:
-        about = module_bench(name)
-        results = Bench(about.top, about.config, about.sources, rtl).run(
-            about.tests, folder, seed=SEED,
-            test_filter=rf"\.{only}\b" if name == "primitives" and file != "latency.vh" else None,
-            extra_env={
-                "PHONG_MODULE": name, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)
-            },
-        )  # fmt: skip
-        cases = ET.parse(results).getroot().findall(".//testcase")
+        if name in TRIALS:
+            bench = trial(name).bench(rtl)
+        else:
+            base, _, small = name.partition("/")
+            about = module_bench(base, _MEMORIES if small in _MEMORIES else (small,) * bool(small))
+            bench = Bench(about.top, about.config, about.sources, rtl, quick=True)
+        made = build.digest(*bench.verilate())
+        if made == _OWN.get(name):
+            return made, ""
+        if name in TRIALS:
+            said = trial(name).complaint(bench)
+            return made, f"fails: {said}" if said else ""
+        return made, _failing(base, bench, about.tests, small)
     except BuildError:
-        return "does not build"
+        return made, REFUSED
     except TimeoutError:
-        return "hangs"
-    except (RuntimeError, SystemExit, OSError, ET.ParseError):
-        return "breaks the simulation"
+        return made, "hangs"
+    except (SimulationError, RuntimeError, SystemExit, OSError, ET.ParseError):
+        return made, "breaks the simulation"
     finally:
         signal.alarm(0)
+
+
+def _failing(name: str, bench: Bench, tests: str, small: str) -> str:
+    """Which of the cocotb tests of a module bench fails, if any."""
+    only = "memory" if small in _MEMORIES else small
+    folder = build.BUILD / "run"
+    shutil.rmtree(folder, ignore_errors=True)
+    results = bench.run(
+        tests, folder, seed=SEED, test_filter=rf"\.{only}\b" if small else None,
+        extra_env={"PHONG_MODULE": name, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)},
+    )  # fmt: skip
+    cases = ET.parse(results).getroot().findall(".//testcase")
     failed = [case.get("name") for case in cases if case.find("failure") is not None]
     return f"fails {failed[0]}" if failed else "" if cases else "runs no test"
 
 
-def killed_by(mutant: Mutant) -> str:
-    """The bench that kills `mutant` (None: the design as it is), and how; empty if none does."""
+def killed_by(mutant: Mutant) -> tuple[str, bool]:
+    """The bench that kills `mutant`, and how ("" if none does); whether any differs for it."""
     rtl = build.BUILD / "rtl"
     shutil.rmtree(rtl, ignore_errors=True)
     shutil.copytree(RTL, rtl)
-    if mutant:
-        (rtl / mutant.file).write_text(mutant.text())
-    for name in BENCHES[Path(mutant.file).stem if mutant else "latency"]:
-        why = passes(name, rtl, mutant.file if mutant else "latency.vh")
+    (rtl / mutant.file).write_text(mutant.text())
+    order = _ORDER.setdefault(mutant.file, _benches(mutant.file))
+    seen = False
+    for name in order:
+        made, why = judge(name, rtl)
+        seen |= made != _OWN[name]
         if why:
-            return f"{name}: {why}"
-    return "lint: complains" if complaint(rtl) else ""
+            order.remove(name)
+            order.insert(0, name)
+            return f"{name}: {why}", seen
+    return ("lint: complains" if complaint(rtl) else ""), seen
 
 
 def complaint(rtl: Path) -> str:
@@ -281,19 +385,26 @@ def explained() -> dict[str, str]:
     return table
 
 
-def _record(chosen: list[Mutant], outcomes: list[str], everything: list[Mutant]) -> None:
-    """Put what was found into the record, file by file; the other files' results stay."""
+def _outcomes() -> dict[str, str]:
+    """{name of a mutant: what killed it, or ""} of all runs so far."""
+    return json.loads(OUTCOMES.read_text()) if OUTCOMES.is_file() else {}
+
+
+def _record(everything: list[Mutant], known: dict[str, str]) -> None:
+    """Put what was found into the record, file by file, where all mutants of a file have been
+    tried; the other files' results stay."""
     found = (records.load("mutate") or {}).get("files", {})
     found = {name: of for name, of in found.items() if (RTL / name).is_file()}
-    for file, kind in {(m.file, m.kind) for m in everything}:
-        ours = [
-            why for m, why in zip(chosen, outcomes, strict=True) if (m.file, m.kind) == (file, kind)
-        ]
-        total = sum((m.file, m.kind) == (file, kind) for m in everything)
-        built = sum(why.endswith(("does not build", "complains")) for why in ours)
+    outcomes = _outcomes()
+    for file, kind in sorted({(m.file, m.kind) for m in everything}):
+        all_of = [m for m in everything if (m.file, m.kind) == (file, kind)]
+        ours = [outcomes.get(m.name) for m in all_of if m.key not in known]
+        if None in ours:
+            continue
+        built = sum(why.endswith((REFUSED, "complains")) for why in ours)
         found.setdefault(file, {})[kind] = {
-            "mutants": total, "refused": built, "killed": len(ours) - built - ours.count(""),
-            "survived": ours.count(""), "equivalent": total - len(ours),
+            "mutants": len(all_of), "refused": built, "killed": len(ours) - built - ours.count(""),
+            "survived": ours.count(""), "equivalent": len(all_of) - len(ours),
             "date": datetime.date.today().isoformat(), "commit": records.commit(),
         }  # fmt: skip
     rows = []
@@ -327,9 +438,55 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--kind", choices=KINDS, help="mutants of this kind only")
     parser.add_argument("--sample", type=int, metavar="N", help="N mutants at random")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="mutants at a time")
-    parser.add_argument("--again", action="store_true", help="the survivors of the last run only")
+    parser.add_argument("--again", action="store_true", help="not those killed before")
     parser.add_argument("--list", action="store_true", help="show the mutants, run nothing")
     return parser.parse_args()
+
+
+def _pool(jobs: int):
+    context = multiprocessing.get_context("fork")
+    return context.Pool(jobs, _start_worker, (context.Value("i", 0),))
+
+
+def _know_the_design(used: list[str], jobs: int) -> str:
+    """Run all benches in `used` on the design itself; returns a complaint, or "".
+
+    A bench that rejects the design would kill every mutant, and mean nothing.
+    """
+    build.runtime()  # once, before all need it
+    for name in used:
+        if name in TRIALS:
+            _ = trial(name).expected  # before the workers start, so that all have it
+    with _pool(jobs) as workers:
+        found = workers.starmap(judge, [(name, RTL) for name in used], 1)
+    for name, (made, why) in zip(used, found, strict=True):
+        if why:
+            return f"{name} rejects the design itself: {why}"
+        _OWN[name] = made
+    return ""
+
+
+def _campaign(chosen: list[Mutant], jobs: int) -> list[Mutant]:
+    """Try all of `chosen`, keeping what comes of each; returns the survivors. Shows progress."""
+    survivors: list[Mutant] = []
+    tried = _outcomes()
+    begin = time.monotonic()
+    with _pool(jobs) as workers:
+        for done, (why, seen) in enumerate(workers.imap(killed_by, chosen), 1):
+            mutant = chosen[done - 1]
+            tried[mutant.name] = why
+            if not why:
+                survivors.append(mutant)
+                print(f"SURVIVED {mutant.file}:{mutant.line}: {mutant.old} -> {mutant.new}: "
+                      f"{mutant.key.partition(': ')[2]}{'' if seen else ' (no bench differs)'}",
+                      flush=True)  # fmt: skip
+            left = (time.monotonic() - begin) / done * (len(chosen) - done)
+            print(f"{done}/{len(chosen)} mutants, {len(survivors)} survived, "
+                  f"{left / 60:.0f} min left; {mutant.file}:{mutant.line} {why or 'survived'}",
+                  file=sys.stderr, flush=True)  # fmt: skip
+            if done % 50 == 0 or done == len(chosen):
+                OUTCOMES.write_text(json.dumps(tried, indent=0))
+    return survivors
 
 
 def main() -> int:
@@ -345,15 +502,13 @@ def main() -> int:
         files = [by_name[name] for name in arguments.files]
     kinds = (arguments.kind,) if arguments.kind else KINDS
     everything = [m for path in files for m in mutants(path, kinds)]
-    stale = set(known) - {m.key for m in everything}
-    if arguments.files or arguments.kind:
-        stale = set()
-    for key in sorted(stale):
-        print(f"explained, but no mutant: {key}")
+    if not (arguments.files or arguments.kind):
+        for key in sorted(set(known) - {m.key for m in everything}):
+            print(f"explained, but no mutant: {key}")
     chosen = [m for m in everything if m.key not in known]
     if arguments.again:
-        last = set(SURVIVORS.read_text().splitlines()) if SURVIVORS.is_file() else set()
-        chosen = [m for m in chosen if m.key in last]
+        tried = _outcomes()
+        chosen = [m for m in chosen if not tried.get(m.name)]
     if arguments.sample and arguments.sample < len(chosen):
         chosen = random.Random(SEED).sample(chosen, arguments.sample)
     if arguments.list:
@@ -362,34 +517,15 @@ def main() -> int:
         print(f"{len(chosen)} mutants, {len(everything) - len(chosen)} left out")
         return 0
 
-    _compile_quickly()
     os.environ["COCOTB_MAX_FAILURES"] = "1"
     os.environ["SIM_CMD_PREFIX"] = f"timeout -k 1 {SIMULATION_SECONDS}"
-    survivors: list[Mutant] = []
-    outcomes: list[str] = []
-    begin = time.monotonic()
-    context = multiprocessing.get_context("fork")
-    with context.Pool(arguments.jobs, _start_worker, (context.Value("i", 0),)) as pool:
-        # A bench that rejects the design itself would kill every mutant, and mean nothing.
-        used = {name for m in chosen for name in BENCHES[Path(m.file).stem]}
-        for name, why in zip(used, pool.starmap(passes, [(n, RTL) for n in used]), strict=True):
-            if why:
-                print(f"mutate: {name} rejects the design itself: {why}", file=sys.stderr)
-                return 2
-        for mutant, why in zip(chosen, pool.imap(killed_by, chosen), strict=True):
-            outcomes.append(why)
-            if not why:
-                survivors.append(mutant)
-                print(f"SURVIVED {mutant.file}:{mutant.line}: {mutant.old} -> {mutant.new}: "
-                      f"{mutant.key.partition(': ')[2]}", flush=True)  # fmt: skip
-            done = len(outcomes)
-            left = (time.monotonic() - begin) / done * (len(chosen) - done)
-            print(f"{done}/{len(chosen)} mutants, {len(survivors)} survived, "
-                  f"{left / 60:.0f} min left; {mutant.file}:{mutant.line} {why or 'survived'}",
-                  file=sys.stderr, flush=True)  # fmt: skip
-    if not (arguments.sample or arguments.again):
-        _record(chosen, outcomes, everything)
-    SURVIVORS.write_text("".join(f"{m.key}\n" for m in survivors))
+    used = list(dict.fromkeys(name for m in chosen for name in _benches(m.file)))
+    if said := _know_the_design(used, arguments.jobs):
+        print(f"mutate: {said}", file=sys.stderr)
+        return 2
+    survivors = _campaign(chosen, arguments.jobs)
+    if not arguments.sample:
+        _record(everything, known)
     print(
         f"{len(chosen)} mutants, {len(chosen) - len(survivors)} killed, "
         f"{len(survivors)} survived; {len(everything) - len(chosen)} left out or explained"

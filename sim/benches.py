@@ -26,10 +26,10 @@ class ModuleBench:
     config: Config = DEFAULT
 
 
-def module_bench(name: str) -> ModuleBench:
-    """The bench `name` of NAMES. Raises KeyError."""
+def module_bench(name: str, only: tuple[str, ...] = ()) -> ModuleBench:
+    """The bench `name` of NAMES. only: of the small modules these. Raises KeyError."""
     if name == "primitives":
-        sources = {f"{primitives.TOP}.v": primitives.source()}
+        sources = {f"{primitives.TOP}.v": primitives.source(only)}
         return ModuleBench(name, primitives.TOP, "tests.modules.primitives", sources)
     if name in MODULES:
         top, text = bench_source(name)

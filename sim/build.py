@@ -1,8 +1,9 @@
 """Builds a bench (a Verilog top level in sim/) with Verilator for cocotb, once per content.
 
 The runtime of Verilator takes most of a build; it is compiled once into build/verilator/ and
-shared. A bench is named after the hash of everything that goes into it, so nothing is built twice
-and different configurations live side by side.
+shared, and so are our main program and the runtime's header for each set of options. A bench is
+named after the hash of everything that goes into it, so nothing is built twice and different
+configurations live side by side.
 """
 
 from __future__ import annotations
@@ -26,11 +27,15 @@ ROOT = Path(__file__).resolve().parent.parent
 RTL = ROOT / "rtl"
 SIM = ROOT / "sim"
 BUILD = ROOT / "build"
+#: What benches have in common.
+SHARED = BUILD / "verilator"
 
 #: The compiler's options. No native instructions: a build may be kept for another machine.
 CXX_FLAGS = "-std=c++20 -O2 -fno-plt -DVL_TIME_CONTEXT"
 
 _VERILATOR_ROOT = Path(verilator.__file__).resolve().parent
+_INCLUDE = _VERILATOR_ROOT / "include"
+_LIBS = cocotb_tools.config.libs_dir
 _RUNTIME = (
     "verilated", "verilated_vpi", "verilated_dpi", "verilated_threads", "verilated_vcd_c",
     "verilated_cov",
@@ -63,7 +68,8 @@ def run_tool(command: list, cwd: Path | None = None) -> str:
     return done.stdout
 
 
-def _digest(*parts: str | bytes | Path) -> str:
+def digest(*parts: str | bytes | Path) -> str:
+    """Hash of texts and of files' contents."""
     sha = hashlib.sha256()
     for part in parts:
         data = part.read_bytes() if isinstance(part, Path) else part
@@ -85,16 +91,15 @@ def _replace(path: Path, text: str) -> None:
 def generate_header(config: Config = DEFAULT) -> Path:
     """Write `phong_config.vh` of `config` into a folder of its own; returns the include folder."""
     text = header(config)
-    folder = BUILD / "config" / f"{config.name}-{_digest(text)[:8]}"
+    folder = BUILD / "config" / f"{config.name}-{digest(text)[:8]}"
     _replace(folder / "phong_config.vh", text)
     return folder
 
 
 def runtime() -> Path:
     """The library of Verilator's runtime, compiled if need be."""
-    include = _VERILATOR_ROOT / "include"
-    sources = [include / f"{name}.cpp" for name in _RUNTIME]
-    folder = BUILD / "verilator" / _digest(CXX_FLAGS, *sources)
+    sources = [_INCLUDE / f"{name}.cpp" for name in _RUNTIME]
+    folder = SHARED / digest(CXX_FLAGS, *sources)
     library = folder / "libverilated.a"
     if library.is_file():
         return library
@@ -102,7 +107,7 @@ def runtime() -> Path:
     jobs = [
         subprocess.Popen(
             ["g++", *CXX_FLAGS.split(), "-DVERILATOR=1", "-DVM_TRACE=1", "-DVM_TRACE_VCD=1",
-             f"-I{include}", f"-I{include / 'vltstd'}", "-c", str(source),
+             f"-I{_INCLUDE}", f"-I{_INCLUDE / 'vltstd'}", "-c", str(source),
              "-o", str(folder / f"{source.stem}.o")],
             text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         )
@@ -115,6 +120,21 @@ def runtime() -> Path:
     run_tool(["ar", "rcs", part, *[folder / f"{name}.o" for name in _RUNTIME]])
     part.replace(library)
     return library
+
+
+def _first_header(options: list[str]) -> Path:
+    """The runtime's header, compiled for `options`: half of the time of a small bench is its.
+
+    A compiler that cannot use what was compiled reads the header beside it.
+    """
+    folder = SHARED / f"first-{digest(*options, _INCLUDE / 'verilated.h')}"
+    header, compiled = folder / "first.h", folder / "first.h.gch"
+    if not compiled.is_file():
+        _replace(header, '#include "verilated.h"\n')
+        part = folder / f"{os.getpid()}.gch"
+        run_tool(["g++", *options, "-x", "c++-header", header, "-o", part])
+        part.replace(compiled)
+    return header
 
 
 class Bench(Verilator):
@@ -150,11 +170,12 @@ class Bench(Verilator):
         super().__init__()
         self._top, self._config, self._rtl, self._trace = top, config, rtl, trace
         self._texts = dict(sources or {})
+        self._written: list[Path] = []
         wanted = coverage or os.environ.get(COVERAGE)
         self._coverage = Path(wanted).resolve() if wanted else None
         include = generate_header(config)
         files = sorted(rtl.glob("*.v*")) + sorted(SIM.glob("*.v")) + [SIM / "main.cpp"]
-        content = _digest(
+        content = digest(
             self._cxx,
             str(trace),
             str(bool(self._coverage)),
@@ -174,15 +195,16 @@ class Bench(Verilator):
         """Unused: `make` builds."""
         return []
 
-    def make(self) -> Path:
-        """Build if need be. Returns the folder. Raises BuildError."""
-        if self.built:
-            return self.folder
-        library = runtime()
+    def verilate(self) -> list[Path]:
+        """Have Verilator write its C++ into the folder, once. Returns its files, headers too.
+
+        Raises BuildError.
+        """
+        if self._written:
+            return self._written
         self.folder.mkdir(parents=True, exist_ok=True)
         for name, text in self._texts.items():
             _replace(self.folder / name, text)
-        libs = cocotb_tools.config.libs_dir
         run_tool(
             [
                 _VERILATOR_ROOT / "bin" / "verilator", "--cc", "--vpi", "--prefix", "Vtop",
@@ -195,34 +217,51 @@ class Bench(Verilator):
                 SIM / "lint.vlt", self._source(),
             ]
         )  # fmt: skip
-        include = _VERILATOR_ROOT / "include"
-        units = sorted(self.folder.glob("Vtop*.cpp"))
+        self._written = sorted([*self.folder.glob("Vtop*.cpp"), *self.folder.glob("Vtop*.h")])
+        return self._written
+
+    def make(self) -> Path:
+        """Build if need be. Returns the folder. Raises BuildError."""
+        if self.built:
+            return self.folder
+        library = runtime()
+        units = [file for file in self.verilate() if file.suffix == ".cpp"]
         whole = self.folder / "whole.cpp"
         whole.write_text("".join(f'#include "{unit.name}"\n' for unit in units))
         options = [
             *self._cxx.split(), "-DVERILATOR=1", f"-DVM_TRACE={int(self._trace)}",
             f"-DVM_COVERAGE={int(bool(self._coverage))}", f"-DVM_TRACE_VCD={int(self._trace)}",
-            f"-I{include}", f"-I{include / 'vltstd'}", f"-I{self.folder}",
+            f"-I{_INCLUDE}", f"-I{_INCLUDE / 'vltstd'}",
         ]  # fmt: skip
-
-        def compile(source: Path) -> Path:
-            target = self.folder / f"{source.stem}.{os.getpid()}.o"
-            run_tool(["g++", *options, "-c", source, "-o", target], cwd=self.folder)
-            return target
-
         with ThreadPoolExecutor() as both:  # at once: it is as long as the slower of them
-            objects = list(both.map(compile, (whole, SIM / "main.cpp")))
+            objects = list(both.map(lambda make: make(options), (self._model, self._main)))
         part = self.folder / f"{self._top}.{os.getpid()}"
         run_tool(
             [
-                "g++", "-o", part, *objects, library, f"-Wl,-rpath,{libs}", f"-L{libs}",
+                "g++", "-o", part, *objects, library, f"-Wl,-rpath,{_LIBS}", f"-L{_LIBS}",
                 "-lcocotbvpi_verilator", "-pthread",
             ]
         )  # fmt: skip
-        for target in objects:
-            target.unlink()
+        objects[0].unlink()
         part.replace(self.folder / self._top)
         return self.folder
+
+    def _model(self, options: list[str]) -> Path:
+        """Compile what Verilator wrote."""
+        target = self.folder / f"whole.{os.getpid()}.o"
+        first = ["-include", _first_header(options)]
+        run_tool(["g++", *options, *first, "-c", self.folder / "whole.cpp", "-o", target])
+        return target
+
+    def _main(self, options: list[str]) -> Path:
+        """Compile the main program, of which there is one for all models with the same ports."""
+        source, ports = SIM / "main.cpp", self.folder / "Vtop.h"
+        target = SHARED / f"main-{digest(*options, source, ports)}.o"
+        if not target.is_file():
+            part = target.with_suffix(f".{os.getpid()}")
+            run_tool(["g++", *options, f"-I{self.folder}", "-c", source, "-o", part])
+            part.replace(target)
+        return target
 
     def _source(self) -> Path:
         name = f"{self._top}.v"

@@ -278,10 +278,12 @@ endmodule
 """
 
 
-def source() -> str:
-    """The Verilog text of the bench."""
+def source(modules: tuple[str, ...] = ()) -> str:
+    """The Verilog text of the bench: of all instances, or of those of `modules`."""
     instances, latencies, writes = [], [], []
     for k, (name, about) in enumerate(INSTANCES.items()):
+        if modules and about.module not in modules:
+            continue
         given = {} if name in DEFAULTS else about.parameters
         parameters = ", ".join(f".{n}({v})" for n, v in given.items())
         parameters = f" #({parameters})" if parameters else ""

@@ -54,7 +54,8 @@ class SimResult:
 class Job:
     """A frame to run, and under which conditions (see `FrameTB.run`).
 
-    spans_path: its file if there is one already. reset_first: reset before it.
+    spans_path: its file if there is one already. reset_first: reset before it. writes: (address,
+    word) of the register writes, if not those that the frame needs.
     """
 
     frame: Frame
@@ -64,6 +65,7 @@ class Job:
     seed: int = 1
     stop_after: int = 0
     reset_first: bool = False
+    writes: list[tuple[int, int]] | None = None
 
 
 def read_pixels(path: Path, config: Config) -> Pixels:
@@ -115,7 +117,7 @@ def simulate_jobs(
                 "pixels": int(np.maximum(job.frame.spans["length"], 1).sum()),
                 "idle": job.idle, "stall": job.stall, "seed": job.seed,
                 "stop_after": job.stop_after, "reset_first": job.reset_first,
-                "writes": writes(job.frame, config),
+                "writes": writes(job.frame, config) if job.writes is None else job.writes,
             })  # fmt: skip
         (folder / "jobs.json").write_text(json.dumps(described))
         try:

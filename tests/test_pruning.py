@@ -16,7 +16,6 @@ from model.frame import Frame, MaterialTable
 from model.registers import writes
 from model.scene import bundled_scenes, load_scene
 from model.scene_to_spans import front_end
-from model.spans import illegal_spans
 from model.twin.specular_power import specular_power
 from scripts import prune, records
 from sim.build import ROOT, Bench
@@ -24,173 +23,31 @@ from sim.elaborate import instances
 from sim.latency import latencies
 from sim.run_frame import Job, simulate_jobs
 from tests.modules.frames import random_frame
+from tests.modules.trials import (
+    ALONE,
+    cosine_only,
+    dull,
+    even_weight,
+    grey,
+    misfits,
+    narrow,
+    no_diffuse,
+    no_environment,
+    one_ambient,
+    one_diffuse,
+    one_exponent,
+    one_sided,
+    one_weight,
+    plain,
+    sharp,
+    tables_only,
+    trial,
+    without,
+)  # fmt: skip
 
 SEED = 1975
 SIZE = (96, 72)
 KEPT = 3  # random scenes in `make test`
-
-
-def plain(seed=SEED, spans: int = 300, longest: int = 12, **changes) -> Frame:
-    """A random frame that needs everything, but for `changes` to its materials: functions of
-    (table, rng) by the name of what they change."""
-    rng = np.random.default_rng(seed)
-    frame = random_frame(seed, spans, longest, two_sided=True)
-    frame.materials.exponent[:4] = np.array([1, 1.5, 10, 128]) * C.exponent.one
-    steepest(frame, rng)
-    for change in changes.values():
-        change(frame, rng)
-    return frame
-
-
-def steepest(frame, rng):
-    """A span with the steepest slopes there are, between normals of the size of unit ones."""
-    one = C.normal.one
-    s = frame.spans[:1]
-    s["length"], s["start"], s["step"] = 2, -one + 1, 2 * one - 2
-
-
-def dull(frame, rng):
-    frame.materials.weight[:] = 0
-
-
-def cosine_only(frame, rng):
-    frame.materials.exponent[:] = C.exponent.one
-
-
-def tables_only(frame, rng):
-    n = C.exponent.quantize(rng.uniform(1.01, 128, C.materials))
-    frame.materials.exponent[:] = np.where(n == C.exponent.one, n + 1, n)
-
-
-def sharp(frame, rng):
-    least = pruning.vanishing_exponent(C)
-    n = rng.integers(least, 128 * C.exponent.one, C.materials)
-    frame.materials.exponent[:] = n
-    frame.materials.exponent[:3] = least, least + 1, C.exponent.one
-
-
-def even_weight(frame, rng):
-    frame.materials.weight[:] = frame.materials.weight[:, :1]
-
-
-def no_diffuse(frame, rng):
-    frame.materials.diffuse[:] = 0
-
-
-def no_environment(frame, rng):
-    frame.materials.ambient[:] = 0
-
-
-def grey(frame, rng):
-    frame.materials.ambient[:] = frame.materials.ambient[:, :1]
-    frame.materials.diffuse[:] = frame.materials.diffuse[:, :1]
-
-
-def one_sided(frame, rng):
-    frame.two_sided = False
-
-
-def one_exponent(frame, rng):
-    frame.materials.exponent[:] = C.exponent.quantize(24.5)
-
-
-def one_weight(frame, rng):
-    frame.materials.weight[:] = frame.materials.weight[0, 0]
-
-
-def one_ambient(frame, rng):
-    frame.materials.ambient[:] = frame.materials.ambient[0]
-
-
-def one_diffuse(frame, rng):
-    frame.materials.diffuse[:] = frame.materials.diffuse[0]
-
-
-def opposite(frame, rng):  # the half-way vector is always the frame's own; here hx < 0
-    frame.half_vector = (-abs(frame.half_vector[0]), frame.half_vector[1])
-
-
-def size_of_unit(frame, rng):
-    """Normals whose largest component is 1/2 to 1 everywhere, except at the steepest span's ends,
-    which are as large."""
-    s = frame.spans[1:]
-    largest = rng.integers(0, 3, len(s))
-    row = np.arange(len(s))
-    start = rng.integers(-C.normal.one // 2, C.normal.one // 2, (len(s), 3))
-    start[row, largest] = np.where(rng.random(len(s)) < 0.5, 3, -3) * (C.normal.one // 4)
-    s["start"], s["step"] = start, rng.integers(-(1 << 24), 1 << 24, (len(s), 3))
-
-
-def gentle(frame, rng):
-    s = frame.spans
-    s["step"] >>= 5
-
-
-def still_x(frame, rng):
-    frame.spans["step"][:, 0] = 0
-
-
-def still_y(frame, rng):
-    frame.spans["step"][:, 1] = 0
-
-
-def still_z(frame, rng):
-    frame.spans["step"][:, 2] = 0
-
-
-def few_materials(frame, rng):
-    frame.spans["material"] &= 7
-
-
-def narrow_picture(frame, rng):
-    frame.spans["x"] %= 240
-
-
-def low_picture(frame, rng):
-    frame.spans["y"] &= 511
-
-
-#: feature: (what makes it go, what goes with it beside the half-way vector, which always does).
-ALONE = {
-    "specular": (
-        dull,
-        {
-            "power_function",
-            "power_bypass",
-            "log_octaves",
-            "weight_function",
-            "constant_exponent",
-            "constant_weight",
-        },
-    ),
-    "power_function": (cosine_only, {"power_bypass", "log_octaves", "constant_exponent"}),
-    "power_bypass": (tables_only, set()),
-    "log_octaves": (sharp, set()),
-    "weight_function": (even_weight, set()),
-    "diffuse": (no_diffuse, {"constant_diffuse"}),
-    "environment": (no_environment, {"constant_ambient"}),
-    "channels": (grey, set()),
-    "two_sided": (one_sided, set()),
-    "constant_half_vector": (opposite, set()),
-    "constant_exponent": (one_exponent, {"power_bypass", "log_octaves"}),
-    "constant_weight": (one_weight, {"weight_function"}),
-    "constant_ambient": (one_ambient, set()),
-    "constant_diffuse": (one_diffuse, set()),
-    "constant_shift": (size_of_unit, set()),
-    "interpolate_x": (still_x, set()),
-    "interpolate_y": (still_y, set()),
-    "interpolate_z": (still_z, set()),
-    "idle_step_bits": (gentle, set()),
-    "idle_material_bits": (few_materials, set()),
-    "idle_x_bits": (narrow_picture, set()),
-    "idle_y_bits": (low_picture, set()),
-}
-
-
-def without(feature: str, frame: Frame):
-    """The full configuration without that one feature, as `prune` would leave it out."""
-    pruned, _ = pruning.prune(frame)
-    return dataclasses.replace(C, name="alone", **{feature: getattr(pruned, feature)})
 
 
 def check(frame: Frame, config, jobs=()):
@@ -282,17 +139,11 @@ def test_digits_of_constants():
 
 
 @pytest.mark.parametrize("feature", ALONE)
-def test_each_feature_alone(feature):
+def test_each_feature_alone_in_the_model(feature):
+    """The RTL of each is in tests/test_trials.py."""
     frame = plain(change=ALONE[feature][0])
-    check(frame, without(feature, frame))
-
-
-@pytest.mark.parametrize("two_sided", [False, True])
-def test_holding_unlit_normals_changes_no_pixel(two_sided):
-    frame = plain()
-    frame.two_sided = two_sided
-    config = dataclasses.replace(C, name="hold", hold_unlit=True)
-    check(frame, config, [Job(frame, idle=100, stall=64, seed=SEED)])
+    own = twin.render(frame, without(feature, frame))
+    assert metrics.compare(twin.render(frame), own).mismatches == 0
 
 
 @pytest.mark.parametrize("scene", bundled_scenes())
@@ -401,40 +252,17 @@ def test_what_does_not_fit_is_flagged():
         assert any(line.startswith(feature) for line in pruning.missing(frame, config)), feature
 
 
-def test_spans_that_do_not_fit_are_flagged_once_each():
-    """Random spans of all kinds on builds that are narrowed in every way: as many as the model
-    says, with and without stalls."""
-    fit = plain()
-    for change in (size_of_unit, still_y, gentle, few_materials, narrow_picture, low_picture):
-        change(fit, np.random.default_rng(SEED))
-    fit.spans["start"][0, 0] = C.normal.one * 3 // 4  # the span that was steep, without a step in y
-    names = ("constant_shift", "interpolate_y", "idle_step_bits", "idle_material_bits",
-             "idle_x_bits", "idle_y_bits")  # fmt: skip
-    narrow = pruning.prune(fit)[0]
-    config = dataclasses.replace(C, name="narrow", **{n: getattr(narrow, n) for n in names})
-    assert all(getattr(config, n) != getattr(C, n) for n in names)
+def test_spans_and_writes_that_do_not_fit_are_known():
+    """What the trials of tests/test_trials.py count in the RTL is there to be counted."""
+    fit, config = narrow()
     assert not pruning.unsupported_spans(fit, config).any()
-    frames = [fit]
-    for change in ("start", "step", "material", "x", "y"):  # one in three of each is any
-        rng = np.random.default_rng(SEED)
-        frame, other = dataclasses.replace(fit, spans=fit.spans.copy()), plain(SEED + 1)
-        rows = np.flatnonzero(rng.random(len(fit.spans)) < 1 / 3)
-        frame.spans[change][rows] = other.spans[change][rows]
-        frames.append(frame)
-    for frame in frames:
-        frame.spans = frame.spans[~illegal_spans(frame, C)]
-        frame.spans["last"][-1] = True
-    wanted = [int(pruning.unsupported_spans(frame, config).sum()) for frame in frames]
-    assert wanted[0] == 0 and min(wanted[1:]) > 20 and max(wanted) < len(fit.spans)
-    bench = Bench("frame_bench", config, quick=True)
-    jobs = [Job(f, stall=s, idle=s) for s in (0, 100) for f in frames]
-    results = simulate_jobs(jobs, config, bench)
-    assert [r.unsupported for r in results] == 2 * wanted
-    for job, result in zip(jobs, results, strict=True):
-        fits = ~pruning.unsupported_spans(job.frame, config)
-        pixel = np.repeat(fits, job.frame.spans["length"])
-        want = twin.render(job.frame)
-        assert np.array_equal(result.pixels.rgb[pixel], want.rgb[pixel])
+    bad = pruning.unsupported_spans(misfits(fit, SEED), config)
+    assert 20 < bad.sum() < len(bad)
+    for name in ("specular", "constant_exponent", "two_sided", "channels"):
+        build = trial(name)
+        words = build.jobs[-1].writes
+        flagged = sum(pruning.unsupported_write(*word, build.config) for word in words)
+        assert 0 < flagged < len(words) - 100, name
 
 
 def test_a_pruned_build_needs_fewer_writes():

@@ -1,0 +1,10 @@
+"""Whole frames, and what does not fit, on the builds of features, techniques and methods."""
+
+import pytest
+
+from tests.modules.trials import TRIALS, trial
+
+
+@pytest.mark.parametrize("name", TRIALS)
+def test_trial(name):
+    assert trial(name).complaint() == ""
