@@ -84,7 +84,9 @@ BENCHES = {
     "inverse_sqrt_method": ("default", "magic_2", "parabolas_8", "table_32", "differences_18"),
     "inverse_sqrt_quadratic": ("parabolas_8", "inverse_sqrt_quadratic", "parabolas_32"),
     "latency": (
-        *_SMALL, *TRIALS, *MODULES, "control", "phong_pipeline", "gouraud", "flat",
+        "default", *_METHODS, "gouraud 3", "hold_unlit", "specular", "power_function", "single",
+        "single matte", "single cosine", "primitives", *MODULES, *TRIALS, "control",
+        "phong_pipeline", "gouraud", "flat",
     ),
     "leading_zeros": (*_SMALL, "width_10"),
     "left_shifter": (*_SMALL, "width_10"),
@@ -293,10 +295,11 @@ def _start_worker(number) -> None:
 def _benches(file: str) -> list[str]:
     """Names of the benches for `file`: of the small modules "primitives/<module>" has only one."""
     stem, _, suffix = file.rpartition(".")
-    return [
+    found = [
         f"{name}/{stem}" if (name, suffix) == ("primitives", "v") else name
         for name in BENCHES[stem]
     ]
+    return list(dict.fromkeys(found))
 
 
 def judge(name: str, rtl: Path) -> tuple[str, str]:
