@@ -38,7 +38,7 @@ help: ## this list
 	@echo 'make prune    what SCENE needs of the pipeline, and why; SCENE=all: what that saves'
 	@echo '                SCENE=all SEEDS=3   placements to try for the clock; 0: no clock'
 	@echo '                SCENE=all GATES=1   count gate equivalents, too (see make synth)'
-	@echo 'make prune-random SCENES=200 random scenes, each on the build pruned to it (a quarter of an hour)'
+	@echo 'make prune-random SCENES=200 random scenes, each on the build pruned to it (minutes)'
 	@echo 'make test     lint, then all tests'
 	@echo 'make lint     Verilator -Wall and Verible on rtl/ and sim/, Ruff on Python'
 	@echo 'make results  the README'"'"'s table of results, measured anew'
@@ -92,7 +92,7 @@ prune: setup
 SCENES ?= 200
 
 prune-random: setup
-	@PHONG_RANDOM_SCENES=$(call quote,$(SCENES)) $(PYTHON) -m pytest tests/test_pruning.py -k random_scene
+	@$(PYTHON) -m scripts.prune_random $(call quote,$(SCENES))
 
 test: lint
 	@$(PYTHON) -m pytest

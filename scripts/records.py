@@ -21,7 +21,7 @@ FOLDER = ROOT / "tests" / "records"
 #: The records of the table, in its order.
 NAMES = (
     "synth-grade6", "synth-grade8", "netlist", "icarus", "formal", "coverage", "mutate",
-    "activity", "bench",
+    "prune-random", "activity", "bench",
 )  # fmt: skip
 HEADER = """\
 | what | figure | command | tools | run on, at | what it does not mean |

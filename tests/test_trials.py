@@ -7,4 +7,5 @@ from tests.modules.trials import TRIALS, trial
 
 @pytest.mark.parametrize("name", TRIALS)
 def test_trial(name):
+    assert trial(name).model_complaint() == ""
     assert trial(name).complaint() == ""

@@ -236,6 +236,18 @@ class Trial:
         """The build, of the design in `rtl`."""
         return Bench("frame_bench", self.config, rtl=rtl, quick=True)
 
+    def model_complaint(self) -> str:
+        """Where the model of this build and that of the full one differ, "" if nowhere."""
+        for k, (_, odd, pixels) in enumerate(self.expected):
+            frame = self.jobs[k].frame
+            if pixels is not None and self.full != self.config:
+                rows = np.flatnonzero(np.repeat(~odd, frame.spans["length"]))
+                own = _rows(twin.render(frame, self.config), rows)
+                compared = metrics.compare(_rows(pixels, rows), own)
+                if compared.mismatches:
+                    return f"job {k}, model: {compared.first}"
+        return ""
+
     def complaint(self, bench: Bench | None = None) -> str:
         """Run all jobs; returns what is wrong first, "" if nothing is.
 
@@ -420,3 +432,25 @@ TRIALS: dict[str, Callable[[], Trial]] = {
 def trial(name: str) -> Trial:
     """The trial `name` of TRIALS. Raises KeyError."""
     return TRIALS[name]()
+
+
+# -- random scenes ---------------------------------------------------------------------------------
+
+
+def random_scene(seed: int) -> Frame:
+    """A frame with a random choice of what it needs."""
+    rng = np.random.default_rng(seed)
+    frame = random_frame(seed, 120, 16, two_sided=bool(rng.random() < 0.5))
+    for change in (dull, even_weight, no_diffuse, no_environment, grey, one_exponent, one_weight,
+                   one_ambient, one_diffuse, cosine_only, sharp, tables_only):  # fmt: skip
+        if rng.random() < 0.2:
+            change(frame, rng)
+    used = rng.choice(C.materials, rng.choice([1, 1, 2, 5, 16]), replace=False)
+    frame.spans["material"] = rng.choice(used, len(frame.spans))
+    return frame
+
+
+def random_trial(seed: int) -> Trial:
+    """Random scene `seed` on the build pruned to it."""
+    frame = random_scene(seed)
+    return Trial(pruning.prune(frame)[0], Job(frame), full=C)
