@@ -259,6 +259,7 @@ def mutants(path: Path, kinds: tuple[str, ...] = KINDS) -> list[Mutant]:
     found = [
         Mutant(path.name, begin, text[begin : begin + len(old)], new, kind)
         for kind in kinds
+        if (kind, path.suffix) != ("operator", ".vh")  # sums of latencies: their terms are tried
         for begin, old, new in changes[kind](code)
     ]
     seen: dict[tuple[str, str], int] = {}
