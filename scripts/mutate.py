@@ -93,7 +93,7 @@ BENCHES = {
     "multiplier": (*_SMALL, "width_10"),
     "narrow_multiplier": (*_SMALL, "power_tables_32", "width_10"),
     "newton_step": ("magic_2", "newton_step", "table_32_newton"),
-    "normal_hold": ("hold_unlit",),
+    "normal_hold": ("hold_unlit", "primitives"),
     "normal_interpolator": (
         *_SMALL, "interpolate_x", "idle_step_bits", "narrow", "gouraud 3", "phong_pipeline",
     ),

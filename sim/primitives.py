@@ -176,6 +176,18 @@ INSTANCES: dict[str, Instance] = {
     "rom_5x7": Instance("rom", {"address": f"a[0+:{ROM_ADDRESS_BITS}]"}, {"word": 7}, _ROM),
     **MEMORIES,
     "interpolator": _interpolator(C.normal.bits), "interpolator_5": _interpolator(5),
+    "hold": Instance(
+        "normal_hold",
+        {
+            "two_sided": "c[0]", "valid": "c[1]", "x": f"a[0+:{C.normal.bits}]",
+            "y": f"b[0+:{C.normal.bits}]", "z": f"c[2+:{C.normal.bits}]",
+        },
+        {
+            "held_valid": 1, "shown": 1, "held_x": C.normal.bits, "held_y": C.normal.bits,
+            "held_z": C.normal.bits,
+        },
+        latency="1",
+    ),
     "register_map": Instance(
         "register_map",
         {

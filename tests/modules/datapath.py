@@ -9,6 +9,7 @@ import os
 
 import cocotb
 import numpy as np
+from cocotb.triggers import FallingEdge
 
 from model.config import DEFAULT as C
 from model.frame import SPAN_DTYPE, Frame, MaterialTable
@@ -21,6 +22,7 @@ from model.twin.specular_cosine import specular_cosine
 from model.twin.specular_power import specular_power
 from model.twin.specular_weight import specular_weight
 from sim.unit_tb import UnitTB
+from sim.units import lanes
 
 SEED = int(os.environ.get("PHONG_SEED", "75"))
 RANDOM = 200_000
@@ -98,6 +100,44 @@ async def normalizer_small(dut):
     normalizer(normal, False, C, trace)
     await tb.hold(valid=1)
     await tb.check(list(normal), trace)
+
+
+@_only("normalizer")
+async def normalizer_halves(dut):
+    """|Zn| on and next to a half between two codes of the cosine, where -z and ~z differ."""
+    tb = UnitTB(dut, MODULE)
+    rng = np.random.default_rng(SEED)
+    drop = C.mantissa.fraction + C.root.fraction - C.cosine.fraction
+    near = []
+    for _ in range(8):
+        normal = rng.integers(C.normal.min, C.normal.max + 1, (3, 1 << 19))
+        normal[2] = -np.abs(normal[2])
+        trace = {}
+        normalizer(normal, True, C, trace)
+        below = np.abs(trace["normalizer.scale"][2]) % (1 << drop)
+        near.append(normal[:, np.abs(below - (1 << (drop - 1))) <= 2])
+    normal = np.concatenate(near, axis=1)
+    assert normal.shape[1] > 50, f"only {normal.shape[1]} vectors are near a half; {NOTE}"
+    trace = {}
+    normalizer(normal, True, C, trace)
+    await tb.hold(two_sided=1, valid=1)
+    await tb.check(list(normal), trace, NOTE)
+
+
+@_only("normalizer")
+async def normalizer_reset(dut):
+    """Zero normals on their way when a reset comes are not flagged after it."""
+    tb = UnitTB(dut, MODULE)
+    await tb.hold(valid=1)
+    zeros = [np.zeros(50, np.int64)] * 3
+    assert (await tb.send(*zeros))["normalizer.zero"][0].all()
+    await tb.hold(valid=0, reset=1)
+    await tb.hold(reset=0)
+    lane = [lane.stage for lane in lanes(MODULE)].index("normalizer.zero")
+    for clock in range(20):
+        flag = int(dut.signals.value) >> (64 * lane) & 1
+        assert not flag, f"module normalizer: zero_normal {clock} clocks after a reset"
+        await FallingEdge(dut.clk)
 
 
 @_only("normalizer")

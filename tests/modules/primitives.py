@@ -196,6 +196,22 @@ async def normal_interpolator(dut, name):
 
 
 @cocotb.test()
+async def normal_hold(dut):
+    """The last normal that may be lit stays, through others and through clocks without a pixel."""
+    rng = np.random.default_rng(SEED)
+    x, y, z = (_corners(rng, C.normal.bits) for _ in range(3))
+    two_sided, valid = rng.random(RANDOM) < 0.3, rng.random(RANDOM) < 0.5
+    shown = two_sided | (z >> (C.normal.bits - 1) == 0)
+    taken = valid & shown
+    taken[0] = valid[0] = two_sided[0] = shown[0] = True
+    last = np.maximum.accumulate(np.where(taken, np.arange(RANDOM), 0))
+    expected = {"held_valid": valid, "shown": shown}
+    expected |= {"held_x": x[last], "held_y": y[last], "held_z": z[last]}
+    inputs = x, y, z << 2 | valid << 1 | two_sided
+    await PrimitivesTB(dut).check("hold", inputs, expected, NOTE)
+
+
+@cocotb.test()
 async def register_map(dut):
     """Every address, written or not, gives its register or its strobe and nothing else."""
     rng = np.random.default_rng(SEED)
