@@ -104,10 +104,13 @@ BENCHES = {
     "phong_pipeline": ("default", *_OLDER, "differences_18", "narrow", "phong_pipeline"),
     "phong_unit": (
         "default", "hold_unlit", "not_normalized", "narrow", "interpolate_x", "interpolate_y",
-        "interpolate_z", "idle_material_bits", "idle_x_bits", "idle_y_bits", "constant_shift",
-        *_SINGLE, "phong_pipeline",
+        "interpolate_z", "idle_step_bits", "idle_material_bits", "idle_x_bits", "idle_y_bits",
+        "constant_shift", *_SINGLE, "phong_pipeline",
     ),
-    "pixel_fifo": ("default", "control", "gouraud 3", "hold_unlit", "single", "phong_pipeline"),
+    "pixel_fifo": (
+        "default", "control", "gouraud 3", "hold_unlit", "narrow", "idle_x_bits", "idle_y_bits",
+        "channels", "phong_pipeline",
+    ),
     "power_schlick": ("schlick_18", "power_schlick", "schlick_14"),
     "power_squaring": ("squaring_18", "power_squaring", "squaring_14"),
     "quadratic_interpolator": ("differences_18", "quadratic_interpolator"),

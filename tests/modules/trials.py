@@ -325,7 +325,8 @@ def _of(frame: Frame, config: Config, full: Config = C) -> Trial:
 
 def _default() -> Trial:
     frame, wild = plain(), random_frame(SEED, 300, 12)
-    wild.spans["step"][::50, 1] = C.normal.max  # most of these leave the format
+    for first, axes in enumerate(([1], [0, 1], [1, 2], [0, 2])):  # most of these leave the format
+        wild.spans["step"][first::50, axes] = C.normal.max
     return Trial(
         C, Job(frame), Job(wild), Job(frame, idle=100, stall=64, seed=SEED),
         Job(wild, stop_after=90, stall=255), Job(wild, reset_first=True),
