@@ -43,9 +43,7 @@ def main(argv: list[str]) -> int:
         try:
             results = IcarusBench(about.top, about.config, about.sources).run(
                 about.tests, folder, seed=SEED,
-                extra_env={
-                    "PHONG_MODULE": name, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)
-                },
+                extra_env=about.environment(folder, SEED),
             )  # fmt: skip
         except BuildError as error:
             print(error, file=sys.stderr)

@@ -36,7 +36,7 @@ from model.config import DEFAULT
 from scripts import records
 from scripts.lint import CONFIGS
 from sim import build
-from sim.benches import module_bench
+from sim.benches import ModuleBench, module_bench
 from sim.build import ROOT, RTL, Bench, BuildError
 from sim.run_frame import SimulationError
 from sim.units import MODULES
@@ -79,7 +79,8 @@ BENCHES = {
     "intensity_code": ("gouraud 3", "intensity_code", "gouraud", "flat"),
     "inverse_sqrt": ("default", "inverse_sqrt", "normalizer", "lines_32", "width_10"),
     "inverse_sqrt_iterated": (
-        "table_32", "magic_2", "inverse_sqrt_iterated", "table_32_newton", "magic_0",
+        "table_32", "magic_2", "inverse_sqrt_iterated", "inverse_sqrt_iterated@magic_1",
+        "table_32_newton", "magic_0",
     ),
     "inverse_sqrt_method": ("default", "magic_2", "parabolas_8", "table_32", "differences_18"),
     "inverse_sqrt_quadratic": ("parabolas_8", "inverse_sqrt_quadratic", "parabolas_32"),
@@ -112,7 +113,7 @@ BENCHES = {
         "channels", "phong_pipeline",
     ),
     "power_schlick": ("schlick_18", "power_schlick", "schlick_14"),
-    "power_squaring": ("squaring_18", "power_squaring", "squaring_14"),
+    "power_squaring": ("squaring_18", "power_squaring", "power_squaring@squaring_14"),
     "quadratic_interpolator": ("differences_18", "quadratic_interpolator"),
     "ram": _SMALL,
     "reflection": ("default", "reflection", *_SINGLE, "width_13"),
@@ -325,7 +326,7 @@ def judge(name: str, rtl: Path) -> tuple[str, str]:
         if name in TRIALS:
             said = trial(name).complaint(bench)
             return made, f"fails: {said}" if said else ""
-        return made, _failing(base, bench, about.tests, small)
+        return made, _failing(about, bench, small)
     except BuildError:
         return made, REFUSED
     except TimeoutError:
@@ -336,14 +337,14 @@ def judge(name: str, rtl: Path) -> tuple[str, str]:
         signal.alarm(0)
 
 
-def _failing(name: str, bench: Bench, tests: str, small: str) -> str:
+def _failing(about: ModuleBench, bench: Bench, small: str) -> str:
     """Which of the cocotb tests of a module bench fails, if any."""
     only = "memory" if small in _MEMORIES else small
     folder = build.BUILD / "run"
     shutil.rmtree(folder, ignore_errors=True)
     results = bench.run(
-        tests, folder, seed=SEED, test_filter=rf"\.{only}\b" if small else None,
-        extra_env={"PHONG_MODULE": name, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED)},
+        about.tests, folder, seed=SEED, test_filter=rf"\.{only}\b" if small else None,
+        extra_env=about.environment(folder, SEED),
     )  # fmt: skip
     cases = ET.parse(results).getroot().findall(".//testcase")
     failed = [case.get("name") for case in cases if case.find("failure") is not None]

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from model.config import DEFAULT, TECHNIQUES, Config
+from model.sweep import CONFIGS
 from sim import primitives
 from sim.units import MODULES, bench_source
 
 #: The pipeline with an older technique in place of normals.
 _OLDER = tuple(name for name, config in TECHNIQUES.items() if config is not DEFAULT)
+#: Modules in another configuration of the sweep, where the default one has less of them.
+_VARIANTS = ("inverse_sqrt_iterated@magic_1", "power_squaring@squaring_14")
 #: All of them, small modules first. `primitives` holds the small modules, side by side.
-NAMES = ("primitives", *MODULES, "control", "phong_pipeline", *_OLDER)
+NAMES = ("primitives", *MODULES, *_VARIANTS, "control", "phong_pipeline", *_OLDER)
 
 
 @dataclass(frozen=True)
@@ -25,16 +29,25 @@ class ModuleBench:
     sources: dict[str, str] = field(default_factory=dict)
     config: Config = DEFAULT
 
+    def environment(self, vectors: Path, seed: int) -> dict[str, str]:
+        """What its tests want to know: the folder for `vectors`, and the seed."""
+        module, _, config = self.name.partition("@")
+        return {
+            "PHONG_MODULE": module, "PHONG_CONFIG": config or "default",
+            "PHONG_VECTORS": str(vectors), "PHONG_SEED": str(seed),
+        }  # fmt: skip
+
 
 def module_bench(name: str, only: tuple[str, ...] = ()) -> ModuleBench:
     """The bench `name` of NAMES. only: of the small modules these. Raises KeyError."""
     if name == "primitives":
         sources = {f"{primitives.TOP}.v": primitives.source(only)}
         return ModuleBench(name, primitives.TOP, "tests.modules.primitives", sources)
-    if name in MODULES:
-        top, text = bench_source(name)
-        tests = f"tests.modules.{MODULES[name].tests}"
-        return ModuleBench(name, top, tests, {f"{top}.v": text})
+    module, _, config = name.partition("@")
+    if module in MODULES:
+        top, text = bench_source(module)
+        tests = f"tests.modules.{MODULES[module].tests}"
+        return ModuleBench(name, top, tests, {f"{top}.v": text}, CONFIGS[config or "default"])
     if name in _OLDER:
         tests = "tests.modules.phong_pipeline"
         return ModuleBench(name, "pipeline_bench", tests, config=TECHNIQUES[name])

@@ -13,7 +13,7 @@ from model.scene import load_scene
 from model.scene_to_spans import front_end
 from model.twin import render
 from scripts import synth, synthesis
-from sim import primitives
+from sim.benches import module_bench
 from sim.build import RTL, SIM, Bench
 from sim.run_frame import Job, simulate_jobs
 from tests.test_modules import run
@@ -31,9 +31,8 @@ def ecp5(tmp_path_factory):
 
 def test_same_as_the_behavioural_modules(ecp5, tmp_path):
     """The very tests of multiplier, rom and ram: exhaustive on short words, random on 18 x 18."""
-    top = primitives.TOP
-    bench = Bench(top, sources={f"{top}.v": primitives.source()}, rtl=ecp5)
-    run(bench, "primitives", "tests.modules.primitives", tmp_path)
+    about = module_bench("primitives")
+    run(about, tmp_path, Bench(about.top, sources=about.sources, rtl=ecp5))
 
 
 def test_whole_frame(ecp5):

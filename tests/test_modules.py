@@ -13,7 +13,7 @@ from model.config import DEFAULT as C
 from model.config import TECHNIQUES
 from model.spans import illegal_spans
 from model.twin import render
-from sim.benches import NAMES, module_bench
+from sim.benches import NAMES, ModuleBench, module_bench
 from sim.build import Bench
 from sim.run_frame import Job, simulate_jobs
 from tests.modules.frames import random_frame
@@ -30,16 +30,11 @@ def outcome(results, folder) -> list[str]:
     return [case.get("name") for case in failed] + (said if failed else [])
 
 
-def run(bench: Bench, module: str, tests: str, folder, config: str = "default") -> None:
-    """Run the cocotb tests `tests` of `module` in `bench`, built for the configuration `config`."""
+def run(about: ModuleBench, folder, bench: Bench | None = None) -> None:
+    """Run the cocotb tests of `about`, in `bench` if it is not the one that `about` describes."""
+    bench = bench or Bench(about.top, about.config, about.sources)
     with contextlib.suppress(SystemExit):  # how the runner says inside pytest that a test failed
-        bench.run(
-            tests, folder, seed=SEED,
-            extra_env={
-                "PHONG_MODULE": module, "PHONG_VECTORS": str(folder), "PHONG_SEED": str(SEED),
-                "PHONG_CONFIG": config,
-            },
-        )  # fmt: skip
+        bench.run(about.tests, folder, seed=SEED, extra_env=about.environment(folder, SEED))
     failures = outcome(folder / "results.xml", folder)
     if failures:
         pytest.fail("\n".join(failures), pytrace=False)
@@ -47,8 +42,7 @@ def run(bench: Bench, module: str, tests: str, folder, config: str = "default") 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_module(name, tmp_path):
-    about = module_bench(name)
-    run(Bench(about.top, about.config, about.sources), name, about.tests, tmp_path)
+    run(module_bench(name), tmp_path)
 
 
 def same_pixels(got, frame, config) -> bool:

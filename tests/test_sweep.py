@@ -18,12 +18,10 @@ from model.sweep import CONFIGS, of_width, points
 from model.twin.quadratic_interpolator import quadratic_interpolator
 from model.verilog import header
 from scripts import records, sweep
-from sim.build import ROOT, Bench
+from sim.build import ROOT
 from sim.elaborate import instances
 from sim.latency import latencies
 from sim.sweep import measure
-from sim.units import bench_source
-from tests.test_modules import run
 
 SMALL = (("model/data/highlights.toml", (72, 24), ""), ("model/data/facets.toml", (96, 16), ""))
 SLICE = ("width_12", "table_8_newton", "dot_first_16", "differences_16")
@@ -115,12 +113,6 @@ def test_fewer_multipliers():
     default = instances()["multiplier"]
     assert instances(CONFIGS["differences_18"])["multiplier"] == default - 8
     assert instances(CONFIGS["dot_first_18"])["multiplier"] == default
-
-
-def test_the_magic_start_in_rtl(tmp_path):
-    top, text = bench_source("inverse_sqrt_iterated")
-    bench = Bench(top, CONFIGS["magic_1"], sources={f"{top}.v": text})
-    run(bench, "inverse_sqrt_iterated", "tests.modules.methods", tmp_path, "magic_1")
 
 
 def test_where_no_bound_is_derived_there_is_none():

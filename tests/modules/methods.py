@@ -193,6 +193,32 @@ async def power_random(dut):
     await tb.check([v, n], trace, NOTE)
 
 
+@_only("power_squaring")
+async def power_halves(dut):
+    """Products on and next to a half unit below 1/2, where the sign of a word would show."""
+    tb = UnitTB(dut, MODULE)
+    rng = np.random.default_rng(SEED)
+    near_v, near_n = [], []
+    for _ in range(8):
+        v = rng.integers(0, C.versine.one, 1 << 19)
+        n = rng.integers(1, 128, len(v)) * C.exponent.one
+        trace = {}
+        power_squaring(v, n, C, trace)
+        near = np.zeros(len(v), bool)
+        for j in range(C.exponent.integer - 2):
+            base, result = trace[f"power_squaring.stage_{j}"]
+            for product in (base * base, base * result):
+                below = (1 << (2 * C.power.bits - 1)) - product
+                near |= (below > 0) & (below <= 1 << (C.power.bits - 1))
+        near_v.append(v[near])
+        near_n.append(n[near])
+    v, n = np.concatenate(near_v), np.concatenate(near_n)
+    assert len(v) > 20, f"only {len(v)} vectors are near 1/2; {NOTE}"
+    trace = {}
+    power_squaring(v, n, C, trace)
+    await tb.check([v, n], trace, NOTE)
+
+
 @_only(*_POWERS)
 async def power_latency(dut):
     """One operand at a time shows at the stated clock only, the exponent alone, too."""
