@@ -118,9 +118,10 @@ BENCHES = {
     "ram": _SMALL,
     "reflection": ("default", "reflection", *_SINGLE, "width_13"),
     "register_map": (
-        *_SMALL, "specular", "power_function", "power_bypass", "log_octaves", "weight_function",
-        "diffuse", "environment", "channels", "two_sided", "constant_half_vector",
-        "constant_exponent", "constant_weight", "constant_ambient", "constant_diffuse", *_SINGLE,
+        *_SMALL, *_SINGLE, "specular", "power_function", "power_bypass", "log_octaves",
+        "weight_function", "diffuse", "environment", "channels", "two_sided",
+        "constant_half_vector", "constant_exponent", "constant_weight", "constant_ambient",
+        "constant_diffuse",
     ),
     "rom": _SMALL,
     "round_saturate": (*_SMALL, "width_13", "single"),
