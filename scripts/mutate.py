@@ -72,7 +72,9 @@ BENCHES = {
     ),
     "constant_multiplier": ("primitives", *_SINGLE),
     "delay": _SMALL,
-    "difference_normalizer": ("differences_18", "difference_normalizer", "differences_14"),
+    "difference_normalizer": (
+        "differences_18", "difference_normalizer", "difference_normalizer@differences_14",
+    ),
     "differences_unit": ("differences_18", "differences_14"),
     "flat_unit": ("flat 3", "flat 1", "flat"),
     "gouraud_unit": ("gouraud 3", "gouraud 1", "gouraud"),

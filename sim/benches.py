@@ -13,7 +13,10 @@ from sim.units import MODULES, bench_source
 #: The pipeline with an older technique in place of normals.
 _OLDER = tuple(name for name, config in TECHNIQUES.items() if config is not DEFAULT)
 #: Modules in another configuration of the sweep, where the default one has less of them.
-_VARIANTS = ("inverse_sqrt_iterated@magic_1", "power_squaring@squaring_14")
+_VARIANTS = (
+    "inverse_sqrt_iterated@magic_1", "power_squaring@squaring_14",
+    "difference_normalizer@differences_14",
+)  # fmt: skip
 #: All of them, small modules first. `primitives` holds the small modules, side by side.
 NAMES = ("primitives", *MODULES, *_VARIANTS, "control", "phong_pipeline", *_OLDER)
 
