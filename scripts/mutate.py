@@ -40,7 +40,7 @@ from sim.benches import ModuleBench, module_bench
 from sim.build import ROOT, RTL, Bench, BuildError
 from sim.run_frame import SimulationError
 from sim.units import MODULES
-from tests.modules.trials import TRIALS, trial
+from tests.trials import TRIALS, trial
 
 EXPLAINED = ROOT / "scripts" / "equivalent_mutants.txt"
 FOLDER = ROOT / "build" / "mutants"
@@ -52,7 +52,7 @@ BENCH_SECONDS = 60
 MEMORY = 4 << 30  # bytes: some mutants have Verilator unroll a loop without end
 REFUSED = "does not build"
 
-#: Module benches and trials (tests/modules/trials.py) that could notice a change of a file. Those
+#: Module benches and trials (tests/trials.py) that could notice a change of a file. Those
 #: of the default configuration come first, for most changes fail them.
 _SMALL = ("default", "primitives")
 _MEMORIES = ("ram", "small_ram")  # whose tests are the same

@@ -18,7 +18,7 @@ from scripts import records
 from scripts.records import Row
 from sim.build import BuildError, runtime
 from sim.run_frame import SimulationError
-from tests.modules.trials import SEED, random_trial
+from tests.trials import SEED, random_trial
 
 MOST = 100_000
 

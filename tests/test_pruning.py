@@ -20,7 +20,7 @@ from sim.build import ROOT, Bench
 from sim.elaborate import instances
 from sim.latency import latencies
 from sim.run_frame import Job, simulate_jobs
-from tests.modules.trials import (
+from tests.trials import (
     ALONE,
     Trial,
     dull,

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.modules.trials import TRIALS, trial
+from tests.trials import TRIALS, trial
 
 
 @pytest.mark.parametrize("name", TRIALS)

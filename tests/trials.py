@@ -293,10 +293,9 @@ def odd_writes(frame: Frame, config: Config, seed: int) -> list[tuple[int, int]]
     kind = 1 << (C.material_bits + C.weight_index_bits)
     one, vanishes = C.exponent.one, pruning.vanishing_exponent(C)
     values = [0, 1, 2, 3, one, one - 1, one + 1, vanishes, vanishes - 1, vanishes + 1]
-    for feature in pruning.FEATURES:
-        value = getattr(config, feature)
-        values += [int(v) & ((1 << C.coefficient.bits + 1) - 1) for v in value or ()
-                   ] if isinstance(value, tuple) else []  # fmt: skip
+    constants = (getattr(config, feature) for feature in pruning.FEATURES)
+    mask = (1 << C.coefficient.bits + 1) - 1
+    values += [int(v) & mask for c in constants if isinstance(c, tuple) for v in c]
     above = 1 << C.coefficient.bits + 1
     out = []
     for address in rng.permutation(2 * kind).tolist():
