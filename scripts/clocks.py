@@ -16,7 +16,7 @@ NAME = "clocks"
 GRADE, SEED = 6, 1
 SOURCE = f"nextpnr, grade {GRADE}, seed {SEED}"
 #: What is kept of a configuration besides key, date and commit.
-FIGURES = ("clock_mhz", "dsp", "lut", "ff", "ebr")
+FIGURES = ("clock_mhz", "dsp", "lut", "ff", "ebr", "longest_path")
 
 
 def key(config: Config) -> str:

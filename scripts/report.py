@@ -280,7 +280,11 @@ def _hover(row: dict) -> str:
     if row.get("correctly_rounded") is not None:
         lines.append(f"{100 * row['correctly_rounded']:.3f} % correctly rounded")
     hardware = [f"{row[n]:.0f} {n.upper()}" for n in ("dsp", "lut", "ff", "ebr") if row.get(n)]
-    return "<br>".join(lines + ([", ".join(hardware)] if hardware else []))
+    if hardware:
+        lines.append(", ".join(hardware))
+    if row.get("longest_path"):
+        lines.append(f"longest path: {row['longest_path']}")
+    return "<br>".join(lines)
 
 
 def clock_note(rows: list[dict]) -> str:

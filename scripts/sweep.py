@@ -39,7 +39,7 @@ COLUMNS = (
     "name", "family", "method", "label", "cycles", "clock_mhz", "clock_source", "frame_us",
     "max_lsb", "rms_lsb", "p999_lsb", "mean_lsb", "correctly_rounded", "psnr_db", "simulate_s",
     "model_s", "dsp", "lut", "ff", "ebr", "pareto", "multipliers", "latency_cycles", "pixels",
-    "mismatches", "port_max_lsb", "bound_lsb", "pareto_hardware",
+    "mismatches", "port_max_lsb", "bound_lsb", "pareto_hardware", "longest_path",
 )  # fmt: skip
 
 
@@ -86,17 +86,19 @@ def parse(argv) -> argparse.Namespace:
 
 
 def hardware(config: Config, area: bool, route: bool) -> dict:
-    """Clock of `config` and where it comes from, multipliers and logic; None for what nobody asked
-    for and no record has.
+    """Clock of `config`, where it comes from and which modules its longest path leads from and to,
+    multipliers and logic; None for what nobody asked for and no record has.
 
     Raises SynthesisError, BuildError.
     """
-    stated = {"clock_mhz": STATED_MHZ, "clock_source": "stated"}
+    stated = {"clock_mhz": STATED_MHZ, "clock_source": "stated", "longest_path": None}
     if route:
         clock = {"clock_key": clocks.key(config), "clock_source": clocks.SOURCE}
         report = synthesis.run(config, clocks.GRADE, (clocks.SEED,))
         used = report["resources"]
         clock["clock_mhz"] = report["fmax_mhz"]["median"]
+        path = report["seeds"][0]["critical_path"]
+        clock["longest_path"] = f"{path['from']['module']} to {path['to']['module']}"
     elif found := clocks.kept(config):
         return found
     elif area:

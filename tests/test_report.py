@@ -160,14 +160,14 @@ def test_the_clock_is_named():
         report.clock_note(rows) == "The clock is a stated 200 MHz, not measured, the same for all."
     )
     rows[0] |= {"clock_mhz": 150, "clock_source": "nextpnr, grade 6, seed 1, kept"}
+    rows[0]["longest_path"] = "ram to rom"
     plots = report.precision_plots(rows)
     shown = plots["frame_us/rms_lsb"]["data"][1]["marker"]["symbol"]
     assert shown == ["circle", "circle-open", "circle-open"]
     assert plots["cycles/rms_lsb"]["data"][1]["marker"]["symbol"] == ["circle"] * 3
-    assert (
-        "at 150 MHz (nextpnr, grade 6, seed 1, kept)"
-        in plots["frame_us/rms_lsb"]["data"][1]["text"][0]
-    )
+    hover = plots["frame_us/rms_lsb"]["data"][1]["text"]
+    assert "at 150 MHz (nextpnr, grade 6, seed 1, kept)" in hover[0]
+    assert "longest path: ram to rom" in hover[0] and "longest path" not in hover[1]
     said = report.clock_note(rows)
     assert "(nextpnr, grade 6, seed 1, kept), but for 2 of 3, the open marks: a stated 200" in said
     for found in rows[1:]:

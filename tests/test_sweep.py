@@ -151,7 +151,7 @@ def _rows():
             "multipliers": 19, "complete": True,
             "mismatches": 0, "port_max_lsb": 0.5, "bound_lsb": None,
             "dsp": 19 - k if k % 2 else None, "lut": 3000 if k % 2 else None,
-            "ff": 10 if k % 2 else None, "ebr": 4 if k % 2 else None,
+            "ff": 10 if k % 2 else None, "ebr": 4 if k % 2 else None, "longest_path": None,
         })  # fmt: skip
     return rows
 
@@ -206,7 +206,9 @@ def test_the_chart_says_which_clocks_are_stated(monkeypatch, tmp_path):
 
 # -- clocks that are kept --------------------------------------------------------------------------
 
-ROUTED = {"clock_mhz": 150.0, "dsp": 11, "lut": 3000, "ff": 5000, "ebr": 4}
+ROUTED = {
+    "clock_mhz": 150.0, "dsp": 11, "lut": 3000, "ff": 5000, "ebr": 4, "longest_path": "ram to rom",
+}  # fmt: skip
 
 
 @pytest.fixture
@@ -237,12 +239,14 @@ def test_a_kept_clock_counts_where_its_key_is_todays(kept_clocks, monkeypatch):
 def test_what_is_routed_anew_is_not_taken_from_the_record(kept_clocks, monkeypatch):
     clocks.keep("magic_1", ROUTED | {"clock_key": "magic_1 today"})
     used = {"dsp": 12, "lut": 100, "carry": 10, "lut_ram": 1, "ff": 7, "ebr": 3}
-    report = {"resources": used, "fmax_mhz": {"median": 199.5}}
+    path = {"from": {"module": "ram"}, "to": {"module": "delay"}}
+    report = {"resources": used, "fmax_mhz": {"median": 199.5}, "seeds": [{"critical_path": path}]}
     monkeypatch.setattr(synthesis, "run", lambda *_: report)
     found = sweep.hardware(CONFIGS["magic_1"], area=False, route=True)
     assert found == {
         "clock_mhz": 199.5, "clock_source": "nextpnr, grade 6, seed 1",
         "clock_key": "magic_1 today", "dsp": 12, "lut": 124, "ff": 7, "ebr": 3,
+        "longest_path": "ram to delay",
     }  # fmt: skip
 
 
