@@ -171,6 +171,12 @@ def readme(rows: list[dict]) -> str:
     return "\n".join(lines)
 
 
+def front(rows: list[dict]) -> str:
+    """The Pareto front of RMS error and run time, the fastest first, as the README names it."""
+    on = sorted((found for found in rows if found["pareto"]), key=lambda found: found["frame_us"])
+    return ", ".join(f"{f['name']} ({f['frame_us']:.0f} µs, {f['rms_lsb']:.4f} LSB)" for f in on)
+
+
 def write_csv(rows: list[dict], path: Path) -> None:
     """The table of `rows`; figures with 6 digits, nothing where there is none."""
 
@@ -253,7 +259,8 @@ def main(argv=None) -> int:
     finish(rows)
     wrong = failures(rows)
     if not wrong:
-        records.save("sweep", "make sweep", ("verilator", "numpy"), [], readme=readme(rows))
+        texts = {"readme": readme(rows), "front": front(rows)}
+        records.save("sweep", "make sweep", ("verilator", "numpy"), [], **texts)
     for line in wrong:
         print(f"Error: {line}", file=sys.stderr)
     if line := unrouted(rows):

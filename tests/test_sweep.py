@@ -169,6 +169,10 @@ def test_table_and_charts(tmp_path):
         rows = list(csv.DictReader(file))
     assert list(rows[0]) == list(sweep.COLUMNS) and len(rows) == 12
     assert [row["pareto"] for row in rows] == ["1"] + ["0"] * 11
+    shown = _rows()
+    shown[3] |= {"rms_lsb": 0.25, "name": "slow"}
+    sweep.finish(shown, tmp_path / "a")
+    assert sweep.front(shown) == "default (5 µs, 0.3000 LSB), slow (5 µs, 0.2500 LSB)"
     assert rows[0]["dsp"] == rows[0]["psnr_db"] == "" and rows[1]["dsp"] == "18"
     text = "".join(ET.parse(tmp_path / "a" / "precision_time.svg").getroot().itertext())
     assert text is not None
@@ -347,7 +351,9 @@ def test_failures():
 
 def test_the_readme_shows_the_record():
     text = (ROOT / "README.md").read_text()
-    assert records.load("sweep")["readme"] in text, "the README's table is old: make sweep"
+    record = records.load("sweep")
+    assert record["readme"] in text, "the README's table is old: make sweep"
+    assert record["front"] in " ".join(text.split()), "the README's front is old: make sweep"
 
 
 def test_the_readme_has_the_kept_clocks():
