@@ -38,7 +38,7 @@ def wrong_share(row: dict) -> float:
 
 
 def _curves(axes: Axes, rows: list[dict], x: Callable, y: Callable, hollow: list[dict]) -> None:
-    """One curve a method, and the Pareto front of all points; the markers of `hollow` are."""
+    """One curve a method, and the Pareto front of all points; hollow markers for `hollow`."""
     for k, method in enumerate(dict.fromkeys(row["method"] for row in rows)):
         own = [row for row in rows if row["method"] == method]
         own.sort(key=y)

@@ -47,9 +47,9 @@ COLOURS = (
 
 #: Columns of the sweep's tables that can be axes, and their names.
 COSTS = {
-    "frame_us": "run time of all frames, µs", "cycles": "cycles a frame", "dsp": "multipliers",
-    "lut": "LUT sites", "ff": "flip-flops", "simulate_s": "host: seconds of RTL simulation",
-    "model_s": "host: seconds of the model",
+    "frame_us": "run time of all frames, µs", "cycles": "cycles of all frames",
+    "dsp": "multipliers", "lut": "LUT sites", "ff": "flip-flops",
+    "simulate_s": "host: seconds of RTL simulation", "model_s": "host: seconds of the model",
 }  # fmt: skip
 ERRORS = {
     "rms_lsb": "RMS error, LSB", "max_lsb": "largest error, LSB", "p999_lsb": "99.9 % error, LSB",

@@ -144,8 +144,8 @@ def unrouted(rows: list[dict]) -> str:
         return ""
     todo = "1" if len(names) == len(rows) else ",".join(names)
     return (
-        f"{len(names)} configurations have no clock of today's sources, {STATED_MHZ:g} MHz are "
-        f"stated: make sweep ROUTE={todo}"
+        f"{len(names)} of {len(rows)} configurations have no clock of today's sources, "
+        f"{STATED_MHZ:g} MHz are stated: make sweep ROUTE={todo}"
     )
 
 

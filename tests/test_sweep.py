@@ -238,6 +238,10 @@ def test_a_kept_clock_counts_where_its_key_is_todays(kept_clocks, monkeypatch):
         found = sweep.hardware(CONFIGS[name], area=False, route=False)
         assert found["clock_mhz"] == sweep.STATED_MHZ and found["clock_source"] == "stated"
         assert found["dsp"] is found["lut"] is found["ff"] is found["ebr"] is None
+    used = {"dsp": 12, "lut": 100, "carry": 10, "lut_ram": 1, "ff": 7, "ebr": 3}
+    monkeypatch.setattr(synthesis, "synthesize", lambda *_: {"resources": used})
+    found = sweep.hardware(CONFIGS["magic_2"], area=True, route=False)
+    assert (found["clock_source"], found["dsp"], found["lut"]) == ("stated", 12, 124)
 
 
 def test_what_is_routed_anew_is_not_taken_from_the_record(kept_clocks, monkeypatch):
@@ -274,7 +278,8 @@ def test_a_clock_of_a_configuration_that_is_gone_goes(kept_clocks):
 def test_what_has_no_clock_is_said(monkeypatch):
     rows = _rows()
     assert sweep.unrouted(rows) == (
-        "12 configurations have no clock of today's sources, 200 MHz are stated: make sweep ROUTE=1"
+        "12 of 12 configurations have no clock of today's sources, 200 MHz are stated: "
+        "make sweep ROUTE=1"
     )
     for found in rows[2:]:
         found["clock_source"] = "nextpnr, grade 6, seed 1, kept"
