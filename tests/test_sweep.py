@@ -170,9 +170,9 @@ def test_table_and_charts(tmp_path):
     assert list(rows[0]) == list(sweep.COLUMNS) and len(rows) == 12
     assert [row["pareto"] for row in rows] == ["1"] + ["0"] * 11
     shown = _rows()
-    shown[3] |= {"rms_lsb": 0.25, "name": "slow"}
-    sweep.finish(shown, tmp_path / "a")
-    assert sweep.front(shown) == "default (5 µs, 0.3000 LSB), slow (5 µs, 0.2500 LSB)"
+    shown[3] |= {"rms_lsb": 0.2501, "name": "slow"}
+    shown[4] |= {"rms_lsb": 0.2500}  # not to be seen
+    assert sweep.front(shown) == "default (5 µs, 0.300 LSB), slow (5 µs, 0.250 LSB)"
     assert rows[0]["dsp"] == rows[0]["psnr_db"] == "" and rows[1]["dsp"] == "18"
     text = "".join(ET.parse(tmp_path / "a" / "precision_time.svg").getroot().itertext())
     assert text is not None
