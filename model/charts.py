@@ -37,8 +37,8 @@ def wrong_share(row: dict) -> float:
     return max(1 - row["correctly_rounded"], 1 / (3 * row["pixels"]))
 
 
-def _curves(axes: Axes, rows: list[dict], x: Callable, y: Callable) -> None:
-    """One curve a method, and the Pareto front of all points."""
+def _curves(axes: Axes, rows: list[dict], x: Callable, y: Callable, hollow: list[dict]) -> None:
+    """One curve a method, and the Pareto front of all points; hollow markers for `hollow`."""
     for k, method in enumerate(dict.fromkeys(row["method"] for row in rows)):
         own = [row for row in rows if row["method"] == method]
         own.sort(key=y)
@@ -49,6 +49,11 @@ def _curves(axes: Axes, rows: list[dict], x: Callable, y: Callable) -> None:
             color="black" if default else matplotlib.colormaps["tab20"](k % 20),
             markersize=10 if default else None,
             zorder=5 if default else 2, label=method, alpha=0.9,
+        )  # fmt: skip
+    if hollow:
+        axes.plot(
+            [x(row) for row in hollow], [y(row) for row in hollow], marker=".", linestyle="none",
+            color="white", markersize=4, markeredgewidth=0, zorder=6,
         )  # fmt: skip
     front = pareto([x(row) for row in rows], [y(row) for row in rows])
     ends = sorted((x(row), y(row)) for row, on in zip(rows, front, strict=True) if on)
@@ -66,7 +71,10 @@ def _plain(axes: Axes) -> None:
     axes.tick_params(axis="x", which="both", labelsize=6, labelrotation=45)
 
 
-def _figure(rows: list[dict], columns: list[tuple[str, Callable]], title: str, path: Path) -> None:
+def _figure(
+    rows: list[dict], columns: list[tuple[str, Callable]], title: str, path: Path,
+    hollow: list[dict] | None = None,
+) -> None:  # fmt: skip
     """RMS error and share of wrong roundings (rows) over each of `columns`; `path`.png and .svg."""
     errors = (
         ("RMS error, LSB of 8 bits", lambda row: row["rms_lsb"]),
@@ -78,7 +86,7 @@ def _figure(rows: list[dict], columns: list[tuple[str, Callable]], title: str, p
         for i, (error_name, error) in enumerate(errors):
             for k, (name, cost) in enumerate(columns):
                 axes = grid[i][k]
-                _curves(axes, rows, cost, error)
+                _curves(axes, rows, cost, error, hollow or [])
                 _plain(axes)
                 axes.set_ylabel(error_name)
                 if i == len(errors) - 1:
@@ -99,15 +107,15 @@ def _figure(rows: list[dict], columns: list[tuple[str, Callable]], title: str, p
 def time_chart(rows: list[dict], path: Path) -> None:
     """Error over the time of all frames, and over that of one pixel through the pipeline.
 
-    The title says where the clock comes from.
+    The title says where the clocks come from; where some are stated, those markers are hollow.
     """
     stated = [row for row in rows if row["clock_source"] == "stated"]
     if len(stated) == len(rows):
         clock = f"clock NOT measured: {rows[0]['clock_mhz']:g} MHz stated for all"
     elif stated:
         clock = (
-            f"clock by place and route; {len(stated)} of {len(rows)} at the stated "
-            f"{stated[0]['clock_mhz']:g} MHz"
+            f"clock by place and route; {len(stated)} of {len(rows)}, the hollow markers, at the "
+            f"stated {stated[0]['clock_mhz']:g} MHz"
         )
     else:
         clock = "each at its own clock by place and route"
@@ -116,7 +124,8 @@ def time_chart(rows: list[dict], path: Path) -> None:
         ("from a span to its first pixel, ns",
          lambda row: 1e3 * row["latency_cycles"] / row["clock_mhz"]),
     ]  # fmt: skip
-    _figure(rows, columns, f"Error against time; {clock}", path)
+    mixed = len(stated) < len(rows)
+    _figure(rows, columns, f"Error against time; {clock}", path, stated if mixed else None)
 
 
 def cost_chart(rows: list[dict], path: Path) -> None:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .config import DEFAULT, Config, Format
+from .differences import MARGIN_BITS
 from .frame import Frame
 
 
@@ -126,8 +127,49 @@ def length(config: Config) -> float:
     return inverse_sqrt(config) + root_operand(config)
 
 
-def cosine(config: Config) -> float:
-    """Error of cos(i) = Zn: direction, length, and rounding or, at 1, the clamp by one LSB."""
+def squares(frame: Frame, config: Config) -> float | None:
+    """`differences`: the largest error of an interpolated square anywhere along the spans of
+    `frame`, against the exact |N|**2 there. None where it is not bounded or means nothing.
+
+    The three words are rounded by half a unit each: after k steps 1 + k + k (k - 1)/2 of it. Over
+    a span, at its last pixel against its smallest |N|**2, which is where N comes nearest to 0. Not
+    bounded: |N|**2 leaves its word (convex: at an end), or may be so wrong that the other square
+    could pass for more than |N|**2 in spite of its margin.
+    """
+    spans = frame.spans[frame.spans["length"] > 0]
+    start, step = (config.normal.real(spans[name]) for name in ("start", "step"))
+    last = spans["length"].astype(float) - 1
+    bend = (step**2).sum(axis=1)
+    nearest = np.clip(-(start * step).sum(axis=1) / np.where(bend > 0, bend, 1), 0, last)
+
+    def square(k):
+        return ((start + k[:, None] * step) ** 2).sum(axis=1)
+
+    error = (1 + last + last * (last - 1) / 2) * config.squared.lsb / 2
+    if (np.maximum(square(0 * last), square(last)) + error >= 1 << config.squared.integer).any():
+        return None
+    worst = float(np.max(error / np.maximum(square(nearest), config.squared.lsb), initial=0.0))
+    return worst if 2 * worst <= 2.0**-MARGIN_BITS else None
+
+
+def root_of_square(square: float, config: Config) -> float:
+    """Relative error of 1/|N| by `differences`: the method's own, and that of |N|**2 (relative,
+    `square`)."""
+    return (1 + length(config)) / np.sqrt(1 - square) - 1
+
+
+def cosine(config: Config, square: float = 0.0) -> float:
+    """Error of cos(i) = Zn: direction, length, and rounding or, at 1, the clamp by one LSB.
+
+    By `differences`, Zn is aligned to a word below 2 and |N| to [1, 2): half an LSB of it by the
+    largest root, 1, or, where it is clamped, a whole one, and what |N| may be too small by, by the
+    smallest, 1/2. square: see `squares`.
+    """
+    if config.normal_method == "differences":
+        word = config.difference_mantissa.lsb
+        stretch = 1 / np.sqrt(1 - square)
+        clamped = (word + 2 * (stretch - 1)) * stretch / (2 - word / 2)
+        return clamped * (1 + length(config)) + root_of_square(square, config) + config.cosine.lsb
     return direction(config) + length(config) + config.cosine.lsb
 
 
@@ -151,8 +193,31 @@ def across(half_vector, config: Config) -> tuple[float, float]:
     return length(config) + abs(norm - 1), float(absolute)
 
 
-def versine(v, half_vector, config: Config):
-    """Error of v (float array, 0 to 1) = 2 |w|**2: twice the growth of the square, and rounding."""
+def quotient(v, config: Config, square: float):
+    """Error of v (float array, 0 to 1) = 2 |N x h|**2/|N|**2 by `differences`; square: see
+    `squares`.
+
+    Relative: the margin and the error of |N|**2. Absolute: the error of the other square. Then the
+    reciprocal: twice the error of the root, and half a unit against 1/4 or more. The cut of the
+    other square: relative where its top bit is set, absolute where it was shifted by all of 15.
+    The cut of the product, and rounding or, at 1, the clamp by one LSB.
+    """
+    q = np.asarray(v) / 2
+    wrong = ((2.0**-MARGIN_BITS + square) * q + square) / (1 - square)
+    reciprocal = (1 + length(config)) ** 2 - 1 + 4 * _round(config.root)
+    fraction = config.difference_mantissa.bits - 2
+    cut = (1 + reciprocal) * (2.0 ** -(fraction + 1) * (q + wrong) + 2.0 ** -(fraction + 15))
+    product = 2.0 ** -(fraction + config.root.fraction)
+    return 2 * (wrong + (q + wrong) * reciprocal + cut + product) + config.versine.lsb
+
+
+def versine(v, half_vector, config: Config, square: float = 0.0):
+    """Error of v (float array, 0 to 1) = 2 |w|**2: twice the growth of the square, and rounding.
+
+    square: by `differences`, see `squares`.
+    """
+    if config.normal_method == "differences":
+        return quotient(v, config, square)
     relative, absolute = across(half_vector, config)
     w = np.sqrt(np.asarray(v) / 2)
     dw = relative * w + absolute
@@ -201,29 +266,30 @@ def specular_power(n: float, config: Config) -> float:
     return log_part + mantissa_part + cut_part + exp_part + config.power.lsb
 
 
-def power(n: float, half_vector, config: Config) -> float:
+def power(n: float, half_vector, config: Config, square: float = 0.0) -> float:
     """Error of cos(s)**n: that of v carried through the power, and the power's own.
 
     n c**(n-1) dv, with c at the end of each step of v where it is largest and dv where it is
     largest: a bound, not an estimate.
     """
     v = np.linspace(0, 1, 1025) ** 2  # dense near the highlight
-    dv = versine(v[1:], half_vector, config)
+    dv = versine(v[1:], half_vector, config, square)
     c = np.minimum(1 - v[:-1] + dv, 1)
     return float(np.max(n * c ** (n - 1) * dv)) + specular_power(n, config)
 
 
-def weight(points, config: Config) -> float:
+def weight(points, config: Config, square: float = 0.0) -> float:
     """Error of W(i), codes `points` int[P]: the steepest line times the error of Zn, rounding."""
     real = config.coefficient.real(points)
     steepest = float(np.abs(np.diff(real)).max()) * (len(real) - 1)
-    return steepest * cosine(config) + _round(config.weight)
+    return steepest * cosine(config, square) + _round(config.weight)
 
 
 def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
     """The budget of one material of `frame`; the last row bounds |code - 255 S| in LSB.
 
-    S is eq. (3) at the pixel; for Gouraud and flat shading, the interpolated intensity.
+    S is eq. (3) at the pixel; for Gouraud and flat shading, the interpolated intensity. By
+    `differences` only where `squares` has a bound.
     """
     white = (1 << config.colour_bits) - 1
     if config.technique != "phong":
@@ -234,24 +300,37 @@ def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
     n = float(config.exponent.real(table.exponent[material]))
     diffuse = float(config.coefficient.real(table.diffuse[material]).max())
     w = float(config.coefficient.real(table.weight[material]).max())
-    parts = [
-        Row("normalizer: direction", direction(config), "mantissas of the normal, radians"),
-        Row("normalizer: length", length(config), "1/sqrt and its operand, relative"),
-        Row("cos(i)", cosine(config), "direction, length, rounding"),
-        Row("w", across(frame.half_vector, config)[1], "direction, rounding; absolute part"),
+    square = 0.0
+    if config.normal_method == "differences":
+        square = squares(frame, config)
+        parts = [
+            Row("squares", square, "interpolated, against |N|^2"),
+            Row("normalizer: length", root_of_square(square, config), "1/sqrt of |N|^2, relative"),
+            Row("cos(i)", cosine(config, square), "Zn aligned, length, rounding"),
+            Row("1 - cos(s)", float(quotient(1.0, config, square)), "largest: at cos(s) = 0"),
+        ]
+    else:
+        parts = [
+            Row("normalizer: direction", direction(config), "mantissas of the normal, radians"),
+            Row("normalizer: length", length(config), "1/sqrt and its operand, relative"),
+            Row("cos(i)", cosine(config), "direction, length, rounding"),
+            Row("w", across(frame.half_vector, config)[1], "direction, rounding; absolute part"),
+        ]
+    parts += [
         Row("specular_power", specular_power(n, config), f"log and exp tables, n = {n:g}"),
     ]
     if w > 0:
-        specular = w * power(n, frame.half_vector, config)
-        weight_error = weight(table.weight[material], config)
+        specular = w * power(n, frame.half_vector, config, square)
+        weight_error = weight(table.weight[material], config, square)
     else:
         specular = weight_error = 0.0
     parts += [
-        Row("diffuse term", diffuse * cosine(config), "Cp (1 - d) times the error of cos(i)"),
+        Row("diffuse term", diffuse * cosine(config, square),
+            "Cp (1 - d) times the error of cos(i)"),
         Row("specular term", specular, "W times the error of cos(s)^n"),
         Row("W(i)", weight_error, "steepest line times the error of cos(i), rounding"),
         Row("cut of S", config.intensity.lsb, "products are whole, the sum is cut once"),
-    ]
+    ]  # fmt: skip
     total = white * sum(row.bound for row in parts[5:]) + 0.5
     return [*parts, Row("code", total, f"LSB: {white} times the terms, and the final rounding")]
 
@@ -261,16 +340,18 @@ def derived(config: Config, n: float) -> bool:
     power_method = config.power_method == "tables" or (
         config.power_method == "squaring" and n == int(n)
     )
-    return config.normal_method in ("normalize", "dot_first") and power_method
+    return config.normal_method in ("normalize", "dot_first", "differences") and power_method
 
 
 def bound_lsb(frame: Frame, config: Config = DEFAULT) -> float | None:
     """Bound of |code - 255 S| in LSB over the materials that `frame` uses (1/2 if it has none).
 
-    None where no bound is derived for a method of `config`.
+    None where no bound is derived for a method of `config`, or none for the spans (`squares`).
     """
     used = np.unique(frame.spans["material"]).tolist()
     exponents = config.exponent.real(frame.materials.exponent[used])
     if not all(derived(config, n) for n in exponents.tolist()):
+        return None
+    if config.normal_method == "differences" and squares(frame, config) is None:
         return None
     return max((rows(m, frame, config)[-1].bound for m in used), default=0.5)

@@ -47,9 +47,9 @@ COLOURS = (
 
 #: Columns of the sweep's tables that can be axes, and their names.
 COSTS = {
-    "frame_us": "time a frame, µs", "cycles": "cycles a frame", "dsp": "multipliers",
-    "lut": "LUT sites", "ff": "flip-flops", "simulate_s": "host: seconds of RTL simulation",
-    "model_s": "host: seconds of the model",
+    "frame_us": "run time of all frames, µs", "cycles": "cycles of all frames",
+    "dsp": "multipliers", "lut": "LUT sites", "ff": "flip-flops",
+    "simulate_s": "host: seconds of RTL simulation", "model_s": "host: seconds of the model",
 }  # fmt: skip
 ERRORS = {
     "rms_lsb": "RMS error, LSB", "max_lsb": "largest error, LSB", "p999_lsb": "99.9 % error, LSB",
@@ -280,11 +280,30 @@ def _hover(row: dict) -> str:
     if row.get("correctly_rounded") is not None:
         lines.append(f"{100 * row['correctly_rounded']:.3f} % correctly rounded")
     hardware = [f"{row[n]:.0f} {n.upper()}" for n in ("dsp", "lut", "ff", "ebr") if row.get(n)]
-    return "<br>".join(lines + ([", ".join(hardware)] if hardware else []))
+    if hardware:
+        lines.append(", ".join(hardware))
+    if row.get("longest_path"):
+        lines.append(f"longest path: {row['longest_path']}")
+    return "<br>".join(lines)
+
+
+def clock_note(rows: list[dict]) -> str:
+    """What the clocks of the precision sweep's `rows` are."""
+    stated = [row for row in rows if row["clock_source"] == "stated"]
+    at = f"a stated {stated[0]['clock_mhz']:g} MHz, not measured" if stated else ""
+    if len(stated) == len(rows):
+        return f"The clock is {at}, the same for all."
+    sources = dict.fromkeys(row["clock_source"] for row in rows if row not in stated)
+    clock = f"The clock is what place and route reports for each ({'; '.join(sources)})"
+    if not stated:
+        return f"{clock}."
+    return f"{clock}, but for {len(stated)} of {len(rows)}, the open marks: {at}."
 
 
 def precision_plots(rows: list[dict]) -> dict[str, dict]:
-    """{"<cost>/<error>": work-precision diagram}: a curve a method, the Pareto front behind."""
+    """{"<cost>/<error>": work-precision diagram}: a curve a method, the Pareto front behind; over
+    time, open marks where the clock is stated and others are not."""
+    routed = any(row["clock_source"] != "stated" for row in rows)
     methods = list(dict.fromkeys(row["method"] for row in rows))
     plots = {}
     for cost, cost_title in COSTS.items():
@@ -301,7 +320,9 @@ def precision_plots(rows: list[dict]) -> dict[str, dict]:
                     opacity=0.45, hoverinfo="skip",
                 )
             ]  # fmt: skip
+            mixed = cost == "frame_us" and routed
             for k, method in enumerate(methods):
+                shape = SHAPES[(k // 2 + k) % len(SHAPES)]
                 own = sorted(((r, x, y) for r, x, y in at if r["method"] == method),
                              key=lambda p: -p[2])  # fmt: skip
                 if own:
@@ -311,7 +332,10 @@ def precision_plots(rows: list[dict]) -> dict[str, dict]:
                             text=[_hover(p[0]) for p in own], mode="lines+markers",
                             hovertemplate="%{text}<extra></extra>",
                             line={"color": COLOURS[k % len(COLOURS)], "width": 1.5},
-                            marker={"symbol": SHAPES[(k // 2 + k) % len(SHAPES)], "size": 9},
+                            marker={"size": 9, "symbol": [
+                                f"{shape}-open" if mixed and r["clock_source"] == "stated"
+                                else shape for r, _, _ in own
+                            ]},
                         )
                     )  # fmt: skip
             plots[f"{cost}/{error}"] = figure(
@@ -497,6 +521,7 @@ def page(build: Path = BUILD, record_folder: Path = records.FOLDER) -> str:
     )  # fmt: skip
     return environment.get_template("report.html.j2").render(
         scenes=scenes, results=results, stability=stability, precision=precision,
+        clock_note=clock_note(precision) if precision else "",
         tessellation=tessellation, records=recorded(record_folder), costs=costs, errors=ERRORS,
         shapes=shapes, sizes=SIZES, surface_errors=surface_errors,
         arguments=paper_arguments(build / "sweep"), technique_names=[title(t) for t in TECHNIQUES],

@@ -2,7 +2,9 @@
 
 Every configuration of `model.sweep` is built, simulated, compared with its twin and measured; the
 results go to build/sweep/precision.csv and, as charts, beside it. What did not change since the
-last run is not simulated, synthesized or routed again.
+last run is not simulated, synthesized or routed again. A frame's time is cycles counted in
+simulation times a clock of place and route: of this run for what ROUTE names, else a kept one (see
+`scripts.clocks`), else a stated one, which table, charts and a last line say.
 
 Exit code: 0; 1 if the RTL of a configuration differs from its twin, misses a bound that is derived
 for it, or a tool failed; 2 if the input is wrong, with one line on stderr that says what.
@@ -23,21 +25,21 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from model.charts import cost_chart, pareto, time_chart
+from model.config import Config
 from model.frame import InputError
 from model.sweep import CONFIGS, Point, points
-from scripts import records, synthesis
+from scripts import clocks, records, synthesis
 from sim.build import BUILD, BuildError, runtime
 from sim.elaborate import instances
 from sim.run_frame import SimulationError
 from sim.sweep import FOLDER, measure
 
 STATED_MHZ = 200.0
-GRADE, SEED = 6, 1
 COLUMNS = (
     "name", "family", "method", "label", "cycles", "clock_mhz", "clock_source", "frame_us",
     "max_lsb", "rms_lsb", "p999_lsb", "mean_lsb", "correctly_rounded", "psnr_db", "simulate_s",
     "model_s", "dsp", "lut", "ff", "ebr", "pareto", "multipliers", "latency_cycles", "pixels",
-    "mismatches", "port_max_lsb", "bound_lsb", "pareto_hardware",
+    "mismatches", "port_max_lsb", "bound_lsb", "pareto_hardware", "longest_path",
 )  # fmt: skip
 
 
@@ -48,9 +50,9 @@ SHOWN = (
     "schlick_18", "interpolator_16", "interpolator_20", "width_14", "width_10",
 )  # fmt: skip
 HEADER = """\
-| configuration | method, size | multipliers | latency, clocks | RMS, LSB | largest, LSB | bound | \
-rounded right |
-|---|---|--:|--:|--:|--:|--:|--:|"""
+| configuration | method, size | multipliers | LUT sites | latency, clocks | clock, MHz | \
+frames, µs | RMS, LSB | largest, LSB | bound | rounded right |
+|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|"""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -83,20 +85,28 @@ def parse(argv) -> argparse.Namespace:
     return given
 
 
-def hardware(point: Point, route: bool) -> dict:
-    """Size of a configuration by Yosys, and its clock where it is routed."""
-    config = point.config
+def hardware(config: Config, area: bool, route: bool) -> dict:
+    """Clock of `config`, where it comes from and which modules its longest path leads from and to,
+    multipliers and logic; None for what nobody asked for and no record has.
+
+    Raises SynthesisError, BuildError.
+    """
+    stated = {"clock_mhz": STATED_MHZ, "clock_source": "stated", "longest_path": None}
     if route:
-        report = synthesis.run(config, GRADE, (SEED,))
+        clock = {"clock_key": clocks.key(config), "clock_source": clocks.SOURCE}
+        report = synthesis.run(config, clocks.GRADE, (clocks.SEED,))
         used = report["resources"]
-        clock = {
-            "clock_mhz": report["fmax_mhz"]["median"],
-            "clock_source": f"nextpnr, grade {GRADE}, seed {SEED}",
-        }
-    else:
+        clock["clock_mhz"] = report["fmax_mhz"]["median"]
+        path = report["seeds"][0]["critical_path"]
+        clock["longest_path"] = f"{path['from']['module']} to {path['to']['module']}"
+    elif found := clocks.kept(config):
+        return found
+    elif area:
         folder = BUILD / "synth" / config.name
         folder.mkdir(parents=True, exist_ok=True)
-        used, clock = synthesis.synthesize(config, folder)["resources"], {}
+        used, clock = synthesis.synthesize(config, folder)["resources"], stated
+    else:
+        return stated | dict.fromkeys(("dsp", "lut", "ff", "ebr"))
     sites = used["lut"] + 2 * used["carry"] + 4 * used["lut_ram"]
     return {"dsp": used["dsp"], "lut": sites, "ff": used["ff"], "ebr": used["ebr"], **clock}
 
@@ -104,10 +114,7 @@ def hardware(point: Point, route: bool) -> dict:
 def row(point: Point, area: bool, route: bool) -> dict:
     """The row of one configuration; COLUMNS but for the Pareto fronts."""
     found = measure(point) | {"multipliers": instances(point.config)["multiplier"]}
-    found |= {"clock_mhz": STATED_MHZ, "clock_source": "stated"}
-    found |= dict.fromkeys(("dsp", "lut", "ff", "ebr"))
-    if area or route:
-        found |= hardware(point, route)
+    found |= hardware(point.config, area, route)
     found["frame_us"] = found["cycles"] / found["clock_mhz"]
     return found
 
@@ -129,8 +136,26 @@ def failures(rows: list[dict]) -> list[str]:
     return lines
 
 
+def unrouted(rows: list[dict]) -> str:
+    """A line on the `rows` without a clock of place and route, and what gives them one; "" if all
+    have theirs."""
+    names = [found["name"] for found in rows if found["clock_source"] == "stated"]
+    if not names:
+        return ""
+    todo = "1" if len(names) == len(rows) else ",".join(names)
+    return (
+        f"{len(names)} of {len(rows)} configurations have no clock of today's sources, "
+        f"{STATED_MHZ:g} MHz are stated: make sweep ROUTE={todo}"
+    )
+
+
 def readme(rows: list[dict]) -> str:
     """The README's table of `SHOWN`. Bounds are of the error against the integers at the ports."""
+
+    def clock(found):
+        stated = " (stated)" if found["clock_source"] == "stated" else ""
+        return f"{found['clock_mhz']:.0f}{stated}"
+
     by_name = {found["name"]: found for found in rows}
     lines = [HEADER]
     for name in SHOWN:
@@ -138,10 +163,26 @@ def readme(rows: list[dict]) -> str:
         bound = "none derived" if found["bound_lsb"] is None else f"{found['bound_lsb']:.2f}"
         lines.append(
             f"| {name} | {found['method']}, {found['label']} | {found['multipliers']} "
-            f"| {found['latency_cycles']} | {found['rms_lsb']:.3f} | {found['max_lsb']:.2f} "
+            f"| {'-' if found['lut'] is None else found['lut']} | {found['latency_cycles']} "
+            f"| {clock(found)} | {found['frame_us']:.0f} "
+            f"| {found['rms_lsb']:.3f} | {found['max_lsb']:.2f} "
             f"| {bound} | {100 * found['correctly_rounded']:.2f} % |"
         )
     return "\n".join(lines)
+
+
+def front(rows: list[dict]) -> str:
+    """The Pareto front of RMS error and run time, the fastest first, as the README names it.
+
+    Errors to a thousandth of an LSB: what is less cannot be seen, and would make half of them part
+    of the front.
+    """
+    error = [round(found["rms_lsb"], 3) for found in rows]
+    on = pareto([found["frame_us"] for found in rows], error)
+    shown = sorted(
+        (f["frame_us"], f["name"], e) for f, e, k in zip(rows, error, on, strict=True) if k
+    )
+    return ", ".join(f"{name} ({time:.0f} µs, {e:.3f} LSB)" for time, name, e in shown)
 
 
 def write_csv(rows: list[dict], path: Path) -> None:
@@ -200,6 +241,8 @@ def run(todo: list[Point], area: bool, route: set[str]) -> list[dict]:
         try:
             for job in as_completed(jobs):
                 found = rows[jobs[job].config.name] = job.result()
+                if found["name"] in route:
+                    clocks.keep(found["name"], found)
                 bar.update(task, advance=1, description=found["name"])
                 if not console.is_terminal:
                     print(f"{len(rows)} of {len(todo)}: {found['name']}", file=sys.stderr)
@@ -224,9 +267,12 @@ def main(argv=None) -> int:
     finish(rows)
     wrong = failures(rows)
     if not wrong:
-        records.save("sweep", "make sweep", ("verilator", "numpy"), [], readme=readme(rows))
+        texts = {"readme": readme(rows), "front": front(rows)}
+        records.save("sweep", "make sweep", ("verilator", "numpy"), [], **texts)
     for line in wrong:
         print(f"Error: {line}", file=sys.stderr)
+    if line := unrouted(rows):
+        print(line)
     print(f"{len(rows)} configurations: build/sweep/precision.csv, and charts beside it")
     return 1 if wrong else 0
 

@@ -24,7 +24,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from model.config import Config
-from sim.build import BUILD, ROOT, RTL, generate_header
+from sim.build import BUILD, ROOT, RTL, generate_header, run_tool
+from sim.elaborate import instances
 
 DEVICE, PACKAGE, DEVICE_OPTION = "LFE5U-85F", "CABGA381", "--85k"
 TECHNOLOGY = RTL / "ecp5"
@@ -324,16 +325,22 @@ def critical_path(report: dict, modules: dict[str, str]) -> dict:
     }
 
 
-def place_and_route(folder: Path, netlist_key: str, grade: int, seed: int) -> dict:
-    """Place and route the harness in `folder`. Returns Fmax, critical path and use of the chip."""
+def _nextpnr(folder: Path, grade: int, seed: int) -> list[str]:
+    """The arguments that place and route the harness in `folder`."""
     stem = folder / f"grade{grade}-seed{seed}"
-    arguments = [
+    return [
         DEVICE_OPTION, "--package", PACKAGE, "--speed", str(grade), "--freq", str(_TARGET_MHZ),
         "--seed", str(seed), "--placer-heap-timingweight", str(_TIMING_WEIGHT),
         "--lpf-allow-unconstrained", "--timing-allow-fail",
         "--json", _relative(folder / "harness.json"), "--textcfg", _relative(Path(f"{stem}.cfg")),
         "--report", _relative(Path(f"{stem}.nextpnr")),
     ]  # fmt: skip
+
+
+def place_and_route(folder: Path, netlist_key: str, grade: int, seed: int) -> dict:
+    """Place and route the harness in `folder`. Returns Fmax, critical path and use of the chip."""
+    stem = folder / f"grade{grade}-seed{seed}"
+    arguments = _nextpnr(folder, grade, seed)
     record = Path(f"{stem}.json")
 
     def make() -> dict:
@@ -416,6 +423,30 @@ def summary(config: Config, grade: int, synthesis: dict, routed: list[dict]) -> 
         "frames_per_s": {f"{w}x{h}": round(median * 1e6 / (w * h), 1) for w, h in SIZES},
         "seconds": round(synthesis["seconds"] + sum(seed["seconds"] for seed in routed), 1),
     }  # fmt: skip
+
+
+def design(config: Config) -> str:
+    """The Verilog of `config` as the tools see it: the modules it instantiates and the harness,
+    macros expanded, comments gone. Raises BuildError.
+    """
+    used = set(instances(config))
+    # All of the technology: what its modules stand for does not name what they are made of.
+    files = [f for f in sources() if f.stem in used or f.parent == TECHNOLOGY]
+    include = (f"-I{generate_header(config)}", f"-I{RTL}")
+    return run_tool(["verilator", "-E", "-P", *include, *files, TECHNOLOGY / f"{_HARNESS}.v"])
+
+
+def design_key(config: Config, grade: int, seed: int) -> str:
+    """What a routed clock of `config` depends on, as a hash: `design`, how it is synthesized and
+    routed, the tools, the limits of the blocks. Raises BuildError.
+
+    For a record that is kept for long. The keys of build/synth go by the files, so that any edit of
+    any of them ends what is kept there; this one stays the same where only comments, or modules and
+    fields of a configuration that this one does not use, were edited. (Lines that move give Yosys
+    other names, and with them a seed of nextpnr other luck; the clock is still one of this design.)
+    """
+    how = (_YOSYS, str(_nextpnr(BUILD / "synth", grade, seed)), str(versions()))
+    return _digest(*how, str(GRADES[grade]), design(config))
 
 
 def run(

@@ -12,6 +12,9 @@ from model.config import DEFAULT as C
 from model.frame import SPAN_DTYPE, Frame, InputError, MaterialTable, half_vector_codes
 from model.metrics import error_metrics
 from model.sweep import CONFIGS
+from model.twin import render
+from model.twin.difference_normalizer import difference_normalizer
+from model.twin.differences_unit import interpolate
 from model.twin.inverse_sqrt import inverse_sqrt
 from model.twin.inverse_sqrt_method import inverse_sqrt_method
 from model.twin.normalizer import normalizer
@@ -164,6 +167,97 @@ def test_versine_of_dot_products_within_its_bound(angle, bits):
     error = np.abs(v - v_true)[inside]
     assert (error <= budget.versine(v_true[inside], half, config)).all()
     assert np.abs(config.cosine.real(cosine) - np.abs(true[2])).max() <= budget.cosine(config)
+
+
+def _spans(length, config, near=0.5, far=1.5):
+    """Random spans of `length` pixels, with |N| between `near` and `far` at both ends."""
+    ends = RNG.normal(size=(2, 3, 1000))
+    ends *= RNG.uniform(near, far, (2, 1, 1000)) / np.linalg.norm(ends, axis=1)[:, None]
+    spans = np.zeros(1000, SPAN_DTYPE)
+    spans["length"] = length
+    spans["start"] = config.normal.quantize(ends[0].T)
+    spans["step"] = config.normal.quantize((ends[1] - ends[0]).T / max(length - 1, 1))
+    return spans
+
+
+def _frame(spans, half_vector, config, n=10.0):
+    table = MaterialTable.empty(config)
+    table.set(0, (0.0, 0.0, 0.0), 0.0, np.ones(config.weight_points), n, config)
+    return Frame(1, 1, half_vector, False, (0, 0, 0), table, spans)
+
+
+@pytest.mark.parametrize("bits", [12, 18])
+@pytest.mark.parametrize("angle", ANGLES)
+@pytest.mark.parametrize("length", [1, 14, 425])
+def test_differences_within_their_bounds(length, angle, bits):
+    config = CONFIGS[f"differences_{bits}"]
+    eye = np.array([np.sin(angle), 0, np.cos(angle)])
+    half = half_vector_codes(eye, config)
+    eye = reference.eye_of(half)
+    spans = _spans(length, config)
+    bounded = [
+        budget.squares(_frame(spans[k : k + 1], half, config), config) is not None
+        for k in range(len(spans))
+    ]
+    spans = spans[bounded]
+    assert len(spans) > (950 if length < 100 else 150)
+    frame = _frame(spans, half, config)
+    bound = budget.squares(frame, config)
+    largest = np.zeros(2)
+    for k in sorted({0, 1, length // 2, length - 1} & set(range(length))):
+        place = np.full(len(spans), k)
+        z, square, across = interpolate(frame, np.arange(len(spans)), place, config)
+        v, cosine, _ = difference_normalizer(z, square, across, True, config)
+        true = config.normal.real(spans["start"]) + k * config.normal.real(spans["step"])
+        length_2 = (true**2).sum(axis=1)
+        assert np.abs(config.squared.real(square) / length_2 - 1).max() <= bound * (1 + 1e-6)
+        true /= np.sqrt(length_2)[:, None]
+        v_true = 1 - (2 * true[:, 2] * (true @ eye) - eye[2])
+        cosine_error = np.abs(config.cosine.real(cosine) - np.abs(true[:, 2]))
+        # beyond 1 it must be as good as 1
+        v_error = np.abs(config.versine.real(v) - np.minimum(v_true, 1))
+        v_bound = budget.versine(np.minimum(v_true, 1), half, config, bound)
+        part = [(cosine_error / budget.cosine(config, bound)).max(), (v_error / v_bound).max()]
+        largest = np.maximum(largest, part)
+    assert (largest <= 1).all() and (largest >= 1 / 4).all(), largest
+
+
+@pytest.mark.parametrize("bits", [12, 14, 16, 18])
+def test_differences_see_no_highlight_across_h(bits):
+    """|N x h|**2 = |N|**2 just below a power of 4, and codes of h that are longer than 1: the other
+    square must not leave the word that the first is aligned to."""
+    config, longer = CONFIGS[f"differences_{bits}"], 0
+    for angle in np.linspace(1.7, 3.1, 60):
+        half = half_vector_codes(np.array([np.sin(angle), 0, np.cos(angle)]), config)
+        longer += np.hypot(*half) > config.half_vector.one
+        across = np.array([-half[1], 0, half[0]]) / np.hypot(*half) * (1 - config.normal.lsb)
+        spans = np.zeros(3, SPAN_DTYPE)
+        spans["length"] = 1
+        spans["start"] = config.normal.quantize(across / np.array([[1], [2], [4]]))
+        frame = _frame(spans, half, config)
+        assert np.abs(reference.render(frame, config)).max() < 1e-6
+        assert (render(frame, config).rgb == 0).all(), angle
+    assert longer > 10
+
+
+def test_differences_have_no_bound_where_they_may_fail():
+    config = CONFIGS["differences_18"]
+    half = half_vector_codes(np.array([0.6, 0, 0.8]), config)
+
+    def bound(start, end, length):
+        spans = np.zeros(1, SPAN_DTYPE)
+        spans["length"], spans["start"] = length, config.normal.quantize(start)
+        spans["step"] = config.normal.quantize((np.array(end) - start) / (length - 1))
+        return budget.squares(_frame(spans, half, config), config)
+
+    assert bound([0.6, 0, 0.8], [-0.6, 0, 0.8], 425) == pytest.approx(
+        (1 + 424 + 424 * 423 / 2) * 2.0**-43 / 0.64, rel=1e-3
+    )
+    assert bound([1.9, 0.5, 0], [1.9, 0, 0.5], 10) is not None
+    assert bound([1.9, 0.7, 0], [1.9, 0, 0.5], 10) is None  # |N|**2 of 4 and more
+    assert bound([0.7, 0, 0.01], [-0.7, 0, 0.01], 5) is not None
+    assert bound([0.7, 0, 0.01], [-0.7, 0, 0.01], 425) is None  # 1e-8 against 1e-4
+    assert bound([0.7, 0, 0], [-0.7, 0, 0], 3) is None  # through 0
 
 
 @pytest.mark.parametrize("n", [1, 1.5, 2, 10, 20, 32, 64, 127.5, 128])

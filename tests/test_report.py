@@ -152,6 +152,29 @@ def test_the_pareto_front():
     assert report.pareto(points) == [(1, 5), (2, 3), (4, 1)]
 
 
+def test_the_clock_is_named():
+    rows = [point("a", str(k), 1000, 1.0) for k in range(3)]
+    shown = report.precision_plots(rows)["frame_us/rms_lsb"]["data"][1]["marker"]["symbol"]
+    assert shown == ["circle"] * 3  # all the same: none is worse
+    assert (
+        report.clock_note(rows) == "The clock is a stated 200 MHz, not measured, the same for all."
+    )
+    rows[0] |= {"clock_mhz": 150, "clock_source": "nextpnr, grade 6, seed 1, kept"}
+    rows[0]["longest_path"] = "ram to rom"
+    plots = report.precision_plots(rows)
+    shown = plots["frame_us/rms_lsb"]["data"][1]["marker"]["symbol"]
+    assert shown == ["circle", "circle-open", "circle-open"]
+    assert plots["cycles/rms_lsb"]["data"][1]["marker"]["symbol"] == ["circle"] * 3
+    hover = plots["frame_us/rms_lsb"]["data"][1]["text"]
+    assert "at 150 MHz (nextpnr, grade 6, seed 1, kept)" in hover[0]
+    assert "longest path: ram to rom" in hover[0] and "longest path" not in hover[1]
+    said = report.clock_note(rows)
+    assert "(nextpnr, grade 6, seed 1, kept), but for 2 of 3, the open marks: a stated 200" in said
+    for found in rows[1:]:
+        found["clock_source"] = "nextpnr, grade 6, seed 1"
+    assert "stated" not in report.clock_note(rows)
+
+
 def test_a_broken_file_is_named(build, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(report, "run_missing", lambda *_: None)
     (tmp_path / "stability").mkdir()
@@ -350,7 +373,9 @@ def test_choosing_an_axis_draws_another_plot(visit, html):
     assert (before != after).any(axis=-1).sum() > 300
     assert plot.locator(".ytitle").text_content() == title
     costs = page.locator("#precision-cost option").all_text_contents()
-    assert "time a frame, µs" in costs and "multipliers" not in costs  # nothing was synthesized
+    assert (
+        "run time of all frames, µs" in costs and "multipliers" not in costs
+    )  # nothing was synthesized
 
 
 @browser
