@@ -132,10 +132,10 @@ BENCHES = {
         "constant_exponent", "constant_weight", "channels", "dot_first_18", "differences_18",
         *_SINGLE,
     ),
-    "slope_multiplier": ("default", "specular_power", "power_tables_32", "width_10"),
+    "slope_multiplier": ("default", "specular_power", "power_tables_32", "power_tables_128"),
     "small_ram": _SMALL,
     "span_guard": (
-        "narrow", "interpolate_x", "interpolate_y", "interpolate_z", "idle_step_bits",
+        "default", "narrow", "interpolate_x", "interpolate_y", "interpolate_z", "idle_step_bits",
         "idle_material_bits", "idle_x_bits", "idle_y_bits", "constant_shift", *_SINGLE,
     ),
     "span_walker": (

@@ -422,7 +422,7 @@ TRIALS: dict[str, Callable[[], Trial]] = {
             "not_normalized", "dot_first_18", "dot_first_14", "differences_18", "differences_14",
             "table_32", "table_32_newton", "magic_0", "magic_2", "parabolas_8", "parabolas_32",
             "lines_32", "squaring_18", "squaring_14", "schlick_18", "schlick_14", "width_10",
-            "width_13", "interpolator_20", "power_tables_32",
+            "width_13", "interpolator_20", "power_tables_32", "power_tables_128",
         )
     },
 }  # fmt: skip
