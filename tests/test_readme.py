@@ -81,3 +81,23 @@ def test_the_python_example_runs(capsys):
     code = re.search(r"```python\n(.*?)```", README, re.S)[1]
     exec(compile(code, "README.md", "exec"), {})
     assert float(capsys.readouterr().out) < 0.6
+
+
+def test_the_spread_of_clocks():
+    """Those whose longest path starts in what all configurations share; and what goes beyond."""
+    by_name = records.load("clocks")["configurations"]
+    kept, text = by_name.values(), " ".join(README.split())
+    starts = ("span_walker", "pixel_fifo", "phong_pipeline", "phong_unit", "harness")
+    shared = [c["clock_mhz"] for c in kept if c["longest_path"].split()[0] in starts]
+    said = re.search(
+        r"In (\d+) of (\d+) the longest path starts in the flow control or the harness, which all "
+        r"share, and their clocks alone run from (\d+) to (\d+) MHz",
+        text,
+    )
+    found = (len(shared), len(kept), round(min(shared)), round(max(shared)))
+    assert tuple(map(int, said.groups())) == found
+    for name, clock in by_name.items():
+        if clock["longest_path"].startswith("rom "):
+            assert f"{name} {clock['clock_mhz']:.0f}" in text
+    own = [c["clock_mhz"] for name, c in by_name.items() if name.startswith("differences")]
+    assert f"their additions, {min(own):.0f} to {max(own):.0f} MHz" in text
