@@ -242,7 +242,8 @@ class Trial:
             frame = self.jobs[k].frame
             if pixels is not None and self.full != self.config:
                 rows = np.flatnonzero(np.repeat(~odd, frame.spans["length"]))
-                own = _rows(twin.render(frame, self.config), rows)
+                fit = dataclasses.replace(frame, spans=frame.spans[~odd])
+                own = twin.render(fit, self.config)
                 compared = metrics.compare(_rows(pixels, rows), own)
                 if compared.mismatches:
                     return f"job {k}, model: {compared.first}"
@@ -274,12 +275,22 @@ def _rows(pixels: twin.Pixels, rows: np.ndarray) -> twin.Pixels:
 
 
 def misfits(frame: Frame, seed: int) -> Frame:
-    """`frame` with one in three of each of its spans' words anything."""
+    """`frame` with one in three of each of its spans' words anything, and one in six spans a single
+    pixel of large normal, and one in six too large first, then of the size of unit ones."""
     rng = np.random.default_rng(seed)
     out, other = dataclasses.replace(frame, spans=frame.spans.copy()), plain(seed)
     for word in ("start", "step", "material", "x", "y"):
         rows = rng.random(len(out.spans)) < 1 / 3
         out.spans[word][rows] = other.spans[word][rows]
+    rows = rng.random(len(out.spans)) < 1 / 6
+    out.spans["length"][rows] = 1
+    out.spans["start"][rows] = rng.integers(C.normal.min, C.normal.max + 1, (rows.sum(), 3))
+    rows = rng.random(len(out.spans)) < 1 / 6
+    longest = np.maximum(out.spans["length"][rows], 3)
+    out.spans["length"][rows] = longest
+    out.spans["start"][rows] = (0, 0, C.normal.one * 3 // 2)
+    out.spans["step"][rows] = 0
+    out.spans["step"][rows, 2] = -(C.normal.one * 3 // 4) // (longest - 1)
     out.spans = out.spans[~illegal_spans(out, C)]
     out.spans["last"] = False
     out.spans["last"][-1] = True
