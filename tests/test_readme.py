@@ -7,6 +7,7 @@ import numpy as np
 from model import error_budget, registers, spans
 from model.config import DEFAULT as C
 from model.config import TECHNIQUES
+from model.sweep import CONFIGS
 from scripts import mutate, records
 from sim.build import ROOT, RTL
 from sim.elaborate import instances
@@ -99,5 +100,8 @@ def test_the_spread_of_clocks():
     for name, clock in by_name.items():
         if clock["longest_path"].startswith("rom "):
             assert f"{name} {clock['clock_mhz']:.0f}" in text
+    missing = len(CONFIGS) - len(by_name)
+    said = re.search(r"(\d+) of which are not routed yet", text)
+    assert (int(said[1]) if said else 0) == missing
     own = [c["clock_mhz"] for name, c in by_name.items() if name.startswith("differences")]
     assert f"their additions, {min(own):.0f} to {max(own):.0f} MHz" in text
