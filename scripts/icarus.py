@@ -60,7 +60,8 @@ def main(argv: list[str]) -> int:
         print(line, file=sys.stderr)
     print(f"{total} tests in four states, {len(failures)} complaints")
     if not argv:
-        version = subprocess.run(["vvp", "-V"], text=True, capture_output=True).stdout.split()[4]
+        said = subprocess.run(["iverilog", "-V"], text=True, capture_output=True).stdout
+        version = said.split()[3]
         records.save(
             "icarus", "make icarus", ("cocotb",),
             [Row("power-up: module tests with X in every register that nothing was written to",

@@ -129,7 +129,7 @@ async def quadratic_interpolator_random(dut):
     at_ports = [np.where(advance, w[span][place], rng.integers(0, 99, len(place))) for w in words]
     load = np.where(advance, k[place] == 0, rng.random(len(place)) < 0.5)
     trace = {"quadratic_interpolator": (pixels[place],)}
-    await tb.check([advance, load, *at_ports], trace, NOTE)
+    await tb.check([advance, load, *at_ports], trace, NOTE, in_sequence=True)
 
 
 @_only("difference_normalizer")
