@@ -79,34 +79,34 @@ setup:
 	@scripts/setup.sh
 
 run: setup
-	@$(PYTHON) -m scripts.run --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE)) \
+	@$(PYTHON) -m phong75.scripts.run --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE)) \
 	  --fps=$(call quote,$(FPS)) --clock-mhz=$(call quote,$(CLOCK_MHZ)) \
 	  --out=$(call quote,$(OUT)) --spans=$(call quote,$(SPANS)) \
 	  --technique=$(call quote,$(TECHNIQUE)) \
 	  --prune=$(call quote,$(PRUNE))
 
 prune: setup
-	@$(PYTHON) -m scripts.prune --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE)) \
+	@$(PYTHON) -m phong75.scripts.prune --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE)) \
 	  --seeds=$(call quote,$(SEEDS)) --gates=$(call quote,$(GATES))
 
 .PHONY: prune-random
 SCENES ?= 200
 
 prune-random: setup
-	@$(PYTHON) -m scripts.prune_random $(call quote,$(SCENES))
+	@$(PYTHON) -m tests.campaigns.random_scenes $(call quote,$(SCENES))
 
 test: lint
 	@$(PYTHON) -m pytest
 
 lint: setup
-	@$(PYTHON) -m scripts.lint
+	@$(PYTHON) -m phong75.scripts.lint
 
 bench: setup
-	@$(PYTHON) -m scripts.bench
+	@$(PYTHON) -m phong75.scripts.benchmark
 
 .PHONY: report test-report test-all stability adversarial
 report: setup
-	@$(PYTHON) -m scripts.report
+	@$(PYTHON) -m phong75.scripts.page.report
 
 test-report: setup
 	@command -v chromium >/dev/null || \
@@ -117,50 +117,50 @@ test-all: lint
 	@$(PYTHON) -m pytest -m ''
 
 stability: setup
-	@$(PYTHON) -m scripts.stability
+	@$(PYTHON) -m phong75.scripts.stability
 
 adversarial: setup
-	@$(PYTHON) -m scripts.adversarial $(if $(KEEP),--keep)
+	@$(PYTHON) -m phong75.scripts.adversarial $(if $(KEEP),--keep)
 
 results: setup
-	@$(PYTHON) -m scripts.results
+	@$(PYTHON) -m phong75.scripts.scene_results
 
 sweep: setup
-	@$(PYTHON) -m scripts.sweep --area=$(call quote,$(AREA)) --route=$(call quote,$(ROUTE))
-	@$(PYTHON) -m scripts.sweep_tessellation
+	@$(PYTHON) -m phong75.scripts.studies.sweep --area=$(call quote,$(AREA)) --route=$(call quote,$(ROUTE))
+	@$(PYTHON) -m phong75.scripts.studies.tessellation_runs
 
 tessellation: setup
-	@$(PYTHON) -m scripts.sweep_tessellation
+	@$(PYTHON) -m phong75.scripts.studies.tessellation_runs
 
 synth: setup
-	@$(PYTHON) -m scripts.synth --config=$(call quote,$(CONFIG)) \
+	@$(PYTHON) -m phong75.scripts.synth --config=$(call quote,$(CONFIG)) \
 	  $(if $(filter-out file,$(origin SCENE)),--scene=$(call quote,$(SCENE))) --grade=$(call quote,$(GRADE)) \
 	  --seeds=$(call quote,$(SEEDS)) --gates=$(call quote,$(GATES))
 
 netlist: setup
-	@$(PYTHON) -m scripts.netlist
+	@$(PYTHON) -m phong75.scripts.netlist
 
 coverage: setup
-	@$(PYTHON) -m scripts.coverage
+	@$(PYTHON) -m tests.campaigns.coverage
 
 activity: setup
-	@$(PYTHON) -m scripts.activity
+	@$(PYTHON) -m phong75.scripts.activity
 
 waves: setup
-	@$(PYTHON) -m scripts.waves $(call quote,$(MODULE))
+	@$(PYTHON) -m phong75.scripts.waves $(call quote,$(MODULE))
 
 mutate: setup
-	@$(PYTHON) -m scripts.mutate $(if $(FILES),--files $(FILES)) $(if $(KIND),--kind $(KIND)) \
+	@$(PYTHON) -m tests.campaigns.mutation $(if $(FILES),--files $(FILES)) $(if $(KIND),--kind $(KIND)) \
 	  $(if $(SAMPLE),--sample $(SAMPLE)) $(if $(AGAIN),--again)
 
 icarus: setup
-	@$(PYTHON) -m scripts.icarus
+	@$(PYTHON) -m tests.campaigns.icarus
 
 hardware: setup
-	@$(PYTHON) -m scripts.records
+	@$(PYTHON) -m phong75.scripts.recorded
 
 formal: setup
-	@$(PYTHON) -m scripts.formal
+	@$(PYTHON) -m phong75.scripts.formal
 
 clean:
 	@rm -rf build .hypothesis .ruff_cache

@@ -1,18 +1,19 @@
 """Phong75's model: scenes to spans, the bit-accurate twin, the float64 reference.
 
-import model
-front = model.front_end(model.load_scene("teapot"))
-pixels = model.render(front.frame)             # to the bit what the RTL gives
-exact = model.reference.render(front.frame)    # 255 * S in float64
+import phong75
+front = phong75.front_end(phong75.load_scene("teapot"))
+pixels = phong75.render(front.frame)             # to the bit what the RTL gives
+exact = phong75.reference.render(front.frame)    # 255 * S in float64
 """
 
-from . import reference, twin
-from .config import DEFAULT, TECHNIQUES, Config, Format
-from .frame import SPAN_DTYPE, ExactFrame, Frame, InputError, MaterialTable
-from .scene import Scene, bundled_scenes, load_scene
-from .scene_to_spans import FrontEnd, front_end
-from .spans import read_spans, write_spans
-from .twin import Pixels, render
+from phong75.model import twin
+from phong75.model.analysis import reference
+from phong75.model.config import DEFAULT, TECHNIQUES, Config, Format
+from phong75.model.frame import SPAN_DTYPE, ExactFrame, Frame, InputError, MaterialTable
+from phong75.model.front.scene import Scene, bundled_scenes, load_scene
+from phong75.model.front.scene_to_spans import FrontEnd, front_end
+from phong75.model.spans import read_spans, write_spans
+from phong75.model.twin import Pixels, render
 
 __all__ = [
     "DEFAULT",

@@ -168,7 +168,7 @@ class Config:
     log_octaves: bool = True  # cos(s) <= 1/2: an n so small that cos(s)^n is not 0 there
     weight_function: bool = True  # W(i) by a table: a material whose W depends on i
     diffuse: bool = True  # Cp (1 - d) cos(i): a material with d other than 1
-    environment: bool = True  # Cp d: a material with d other than 0
+    ambient: bool = True  # Cp d: a material with d other than 0
     channels: int = 3  # 1: red, green and blue alike
     two_sided: bool = True  # |Zn| in place of Zn, where a frame asks for it
     interpolate_x: bool = True  # a span along which the normal's x varies
@@ -187,10 +187,10 @@ class Config:
     constant_diffuse: tuple = constants("red", "green", "blue")
 
     # -- other methods for the same job, the first the default (see model/sweep.py) ----------------
-    normal_method: str = choice("normalize", "dot_first", "none", "differences")
+    normal_method: str = choice("normalize", "dot_first", "none", "quadratic_spans")
     squared: Format = _signed(2, 42)  # differences: |N|**2 and its part across h, interpolated
-    difference_mantissa: Format = _unsigned(1, 17)  # differences: Zn, aligned
-    root_method: str = choice("lines", "quadratic", "table", "magic")  # of 1/sqrt
+    quadratic_mantissa: Format = _unsigned(1, 17)  # differences: Zn, aligned
+    root_method: str = choice("lines", "quadratic", "table", "fast_inverse")  # of 1/sqrt
     root_newton_steps: int = 0  # after table or magic: steps of Newton's iteration
     quadratic_index_bits: int = 4  # parabolas in each of [1, 2) and [2, 4)
     quadratic_value_bits: int = 20  # table value: u0.20

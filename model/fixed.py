@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .config import Format
+from phong75.model.config import Format
 
 
 def round_shift(value, shift: int):

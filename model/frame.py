@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .config import Config
+from phong75.model.config import Config
 
 #: One span (see the README, "Formats"): `length` pixels from (x, y) to the right, the normal at
 #: the centre of the first pixel and its step to the next (codes of `Config.normal`, in the light

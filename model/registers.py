@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .config import Config
-from .frame import Frame
+from phong75.model.config import Config
+from phong75.model.frame import Frame
 
 #: Index of each field at addresses of kind 1. Ambient and diffuse take three: red, green, blue.
 FIELDS = {"ambient": 0, "diffuse": 3, "exponent": 6, "half_x": 8, "half_z": 9, "control": 10}
@@ -54,7 +54,7 @@ def writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
             alike = c and ambient[c] == ambient[0] and diffuse[c] == diffuse[0]
             there = config.channels == 3 or not alike
             for name, code, constant, term in (
-                ("ambient", ambient[c], config.constant_ambient, config.environment),
+                ("ambient", ambient[c], config.constant_ambient, config.ambient),
                 ("diffuse", diffuse[c], config.constant_diffuse, config.diffuse),
             ):
                 known = code == (constant[c] if constant else 0 if not term else -1)

@@ -36,9 +36,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import differences
-from .config import Config
-from .frame import SPAN_DTYPE, Frame, InputError, MaterialTable
+from phong75.model import quadratic_spans
+from phong75.model.config import Config
+from phong75.model.frame import SPAN_DTYPE, Frame, InputError, MaterialTable
 
 MAGIC = "phong75-spans 1"
 
@@ -71,7 +71,7 @@ class SpanField(NamedTuple):
 
 def squares_only(config: Config) -> bool:
     """Whether spans carry squares of the normal in place of its x and y (model/differences.py)."""
-    return config.technique == "phong" and config.normal_method == "differences"
+    return config.technique == "phong" and config.normal_method == "quadratic_spans"
 
 
 def span_fields(config: Config) -> list[SpanField]:
@@ -81,7 +81,7 @@ def span_fields(config: Config) -> list[SpanField]:
     widths = [(f"{what}_{axis}", config.normal.bits) for what in carried for axis in axes]
     if squares_only(config):
         widths = [(f"{what}_z", config.normal.bits) for what in carried]
-        widths += [(name, config.squared.bits) for name in differences.NAMES]
+        widths += [(name, config.squared.bits) for name in quadratic_spans.NAMES]
     widths += [
         ("x", config.coordinate_bits),
         ("y", config.coordinate_bits),
@@ -154,7 +154,9 @@ def pack(spans: np.ndarray, config: Config, half_vector=(0, 0)) -> bytes:
     words = np.zeros((len(spans), record_bits(config) // _WORD), np.uint64)
     if not np.array_equal(spans, _implied(spans, config)):
         raise ValueError("a span has a step or colours that a record has no place for")
-    squares = differences.coefficients(spans, half_vector, config) if squares_only(config) else {}
+    squares = (
+        quadratic_spans.coefficients(spans, half_vector, config) if squares_only(config) else {}
+    )
     for field in span_fields(config):
         square = squares.get(field.name)
         value, signed = _column(spans, field.name) if square is None else (square, True)

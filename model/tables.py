@@ -14,7 +14,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from .config import Config
+from phong75.model.config import Config
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ def _lines(name, left, right, midpoint, value_scale, value_bits, slope_scale, sl
 
 
 @lru_cache
-def inverse_sqrt_table(config: Config) -> LineTable:
+def inverse_sqrt_linear_table(config: Config) -> LineTable:
     """1/sqrt(x), x in [1, 4): the segments of [1, 2), then those of [2, 4). Falling lines.
 
     Value: u0.`root_value_bits`. Slope: 8 times finer, a segment.
@@ -103,7 +103,7 @@ def inverse_sqrt_table(config: Config) -> LineTable:
     error = left + chord_slope * (touch - a) - touch**-0.5
     scale = 2.0**config.root_value_bits
     return _lines(
-        "inverse_sqrt", left, right, error, scale, config.root_value_bits,
+        "inverse_sqrt_linear", left, right, error, scale, config.root_value_bits,
         scale * 8, config.root_slope_bits,
     )  # fmt: skip
 
@@ -212,6 +212,7 @@ def reciprocal_table(config: Config) -> LineTable:
 def tables(config: Config) -> list[LineTable | ParabolaTable | ConstantTable]:
     """All tables of a configuration, those of methods that it does not use included."""
     return [
-        inverse_sqrt_table(config), inverse_sqrt_parabolas(config), inverse_sqrt_start(config),
+        inverse_sqrt_linear_table(config), inverse_sqrt_parabolas(config),
+        inverse_sqrt_start(config),
         log_table(config), exp_table(config), reciprocal_table(config),
     ]  # fmt: skip

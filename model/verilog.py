@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 
-from .config import Config, Format, levels
-from .registers import FIELDS
-from .spans import record_bits, span_fields
-from .tables import tables
+from phong75.model.config import Config, Format, levels
+from phong75.model.registers import FIELDS
+from phong75.model.spans import record_bits, span_fields
+from phong75.model.tables import tables
 
 
 def _table(table) -> str:

@@ -12,10 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from . import reference
-from .config import Config
-from .frame import ExactFrame, Frame
-from .twin.phong_pipeline import shade
+from phong75.model.analysis import reference
+from phong75.model.config import Config
+from phong75.model.frame import ExactFrame, Frame
+from phong75.model.twin.phong_pipeline import shade
 
 
 def intensities(normal, material, frame: Frame, config: Config) -> np.ndarray:

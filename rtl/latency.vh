@@ -14,7 +14,7 @@
 `define PHONG_LEFT_SHIFTER_LATENCY 2       // multiples of four, remainder
 `define PHONG_ROUND_SATURATE_LATENCY 2     // round, saturate
 
-`define PHONG_INVERSE_SQRT_LATENCY \
+`define PHONG_INVERSE_SQRT_LINEAR_LATENCY \
   ( 1                                /* lookup: align, address */ \
   + `PHONG_ROM_LATENCY \
   + `PHONG_MULTIPLIER_LATENCY        /* refine: slope * offset */ \
@@ -48,8 +48,8 @@
   ( `PHONG_INVERSE_SQRT_START_LATENCY \
   + `PHONG_ROOT_NEWTON_STEPS * `PHONG_NEWTON_STEP_LATENCY )
 
-`define PHONG_INVERSE_SQRT_METHOD_LATENCY \
-  ( `PHONG_ROOT_METHOD == `PHONG_ROOT_METHOD_LINES ? `PHONG_INVERSE_SQRT_LATENCY : \
+`define PHONG_INVERSE_SQRT_LATENCY \
+  ( `PHONG_ROOT_METHOD == `PHONG_ROOT_METHOD_LINES ? `PHONG_INVERSE_SQRT_LINEAR_LATENCY : \
     `PHONG_ROOT_METHOD == `PHONG_ROOT_METHOD_QUADRATIC ? `PHONG_INVERSE_SQRT_QUADRATIC_LATENCY : \
     `PHONG_INVERSE_SQRT_ITERATED_LATENCY )
 
@@ -69,7 +69,7 @@
   + `PHONG_MULTIPLIER_LATENCY        /* squares */ \
   + 2                                /* sum of squares */ \
   + 1                                /* operand of the root */ \
-  + `PHONG_INVERSE_SQRT_METHOD_LATENCY \
+  + `PHONG_INVERSE_SQRT_LATENCY \
   + `PHONG_MULTIPLIER_LATENCY        /* scale */ \
   + 1                                /* scale: double */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
@@ -78,11 +78,11 @@
   ( 1                                /* |Zn| */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
-`define PHONG_DIFFERENCE_NORMALIZER_LATENCY \
+`define PHONG_QUADRATIC_NORMALIZER_LATENCY \
   ( 1                                /* clamp */ \
   + `PHONG_LEADING_ZEROS_LATENCY     /* shifts */ \
   + `PHONG_LEFT_SHIFTER_LATENCY      /* align; that of the other square takes longer, in time */ \
-  + `PHONG_INVERSE_SQRT_METHOD_LATENCY \
+  + `PHONG_INVERSE_SQRT_LATENCY \
   + `PHONG_MULTIPLIER_LATENCY        /* versine: square of the root */ \
   + `PHONG_ROUND_SATURATE_LATENCY \
   + `PHONG_MULTIPLIER_LATENCY        /* versine: product */ \
@@ -91,30 +91,31 @@
 
 // From the interpolators to the shading unit.
 `define PHONG_NORMAL_LATENCY \
-  ( `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_DIFFERENCES ? \
-        `PHONG_DIFFERENCE_NORMALIZER_LATENCY : \
+  ( `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_QUADRATIC_SPANS ? \
+        `PHONG_QUADRATIC_NORMALIZER_LATENCY : \
     `PHONG_HOLD_UNLIT \
   + (`PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_NONE ? `PHONG_UNNORMALIZED_LATENCY : \
     `PHONG_NORMALIZER_LATENCY) )
 
-`define PHONG_ACROSS_LATENCY \
+`define PHONG_HALF_VECTOR_CROSS_LATENCY \
   ( (`PHONG_CONSTANT_HALF_VECTOR ? `PHONG_CONSTANT_HALF_VECTOR_LEVELS \
                                  : `PHONG_MULTIPLIER_LATENCY + 1) \
                                      /* products with h, fetch */ \
   + 1                                /* subtract */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
-`define PHONG_VERSINE_OF_PARTS_LATENCY \
+`define PHONG_VERSINE_OF_CROSS_LATENCY \
   ( `PHONG_MULTIPLIER_LATENCY        /* squares */ \
   + 2                                /* fetch, sum */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
-`define PHONG_REFLECTION_LATENCY (`PHONG_ACROSS_LATENCY + `PHONG_VERSINE_OF_PARTS_LATENCY)
+`define PHONG_REFLECTION_LATENCY \
+  (`PHONG_HALF_VECTOR_CROSS_LATENCY + `PHONG_VERSINE_OF_CROSS_LATENCY)
 
 // From what the shading unit is given to 1 - cos(s).
 `define PHONG_HIGHLIGHT_LATENCY \
-  ( `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_DOT_FIRST ? `PHONG_VERSINE_OF_PARTS_LATENCY : \
-    `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_DIFFERENCES ? 0 : `PHONG_REFLECTION_LATENCY )
+  ( `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_DOT_FIRST ? `PHONG_VERSINE_OF_CROSS_LATENCY : \
+    `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_QUADRATIC_SPANS ? 0 : `PHONG_REFLECTION_LATENCY )
 
 `define PHONG_LOG_LATENCY \
   ( (`PHONG_LOG_OCTAVES ? `PHONG_LEADING_ZEROS_LATENCY + `PHONG_LEFT_SHIFTER_LATENCY : 0) \
@@ -132,7 +133,7 @@
 `define PHONG_TIMES_EXPONENT_LATENCY \
   ( `PHONG_CONSTANT_EXPONENT ? `PHONG_CONSTANT_EXPONENT_LEVELS : `PHONG_MULTIPLIER_LATENCY )
 
-`define PHONG_SPECULAR_POWER_LATENCY \
+`define PHONG_SPECULAR_POWER_TABLES_LATENCY \
   ( `PHONG_LOG_LATENCY \
   + `PHONG_TIMES_EXPONENT_LATENCY \
   + 3                                /* times exponent: shift twice, saturate */ \
@@ -149,12 +150,12 @@
   + `PHONG_ROUND_SATURATE_LATENCY \
   + 1 )                              /* choice */
 
-`define PHONG_POWER_SQUARING_LATENCY \
+`define PHONG_SPECULAR_POWER_SQUARING_LATENCY \
   ( `PHONG_SPECULAR_COSINE_LATENCY \
   + (`PHONG_EXPONENT_BITS - `PHONG_EXPONENT_FRACTION - 1) * `PHONG_SQUARING_STAGE_LATENCY \
   + 1 )                              /* last: choice */
 
-`define PHONG_POWER_SCHLICK_LATENCY \
+`define PHONG_SPECULAR_POWER_SCHLICK_LATENCY \
   ( `PHONG_ROUND_SATURATE_LATENCY    /* denominator: versine */ \
   + `PHONG_MULTIPLIER_LATENCY        /* denominator: times n - 1 */ \
   + 1                                /* denominator: plus 1 */ \
@@ -168,10 +169,10 @@
   + 2                                /* quotient: shift twice */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
-`define PHONG_SPECULAR_POWER_METHOD_LATENCY \
-  ( `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_TABLES ? `PHONG_SPECULAR_POWER_LATENCY : \
-    `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_SQUARING ? `PHONG_POWER_SQUARING_LATENCY : \
-    `PHONG_POWER_SCHLICK_LATENCY )
+`define PHONG_SPECULAR_POWER_LATENCY \
+  ( `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_TABLES ? `PHONG_SPECULAR_POWER_TABLES_LATENCY : \
+    `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_SQUARING ? `PHONG_SPECULAR_POWER_SQUARING_LATENCY : \
+    `PHONG_SPECULAR_POWER_SCHLICK_LATENCY )
 
 // From the versine to where its exponent is wanted.
 `define PHONG_EXPONENT_LATENCY \
@@ -198,13 +199,13 @@
 
 `define PHONG_COLOUR_CHANNEL_LATENCY \
   ( `PHONG_PRODUCTS_LATENCY          /* intensity: products */ \
-  + (`PHONG_ENVIRONMENT & `PHONG_DIFFUSE & `PHONG_SPECULAR ? 2 : 1) \
+  + (`PHONG_AMBIENT & `PHONG_DIFFUSE & `PHONG_SPECULAR ? 2 : 1) \
                                      /* intensity: ambient + diffuse, + specular */ \
   + 1                                /* intensity: clamp, cut */ \
   + 2 )                              /* code: times 255, round */
 
 `define PHONG_POWER_LATENCY \
-  ( `PHONG_POWER_FUNCTION ? `PHONG_SPECULAR_POWER_METHOD_LATENCY : `PHONG_SPECULAR_COSINE_LATENCY )
+  ( `PHONG_POWER_FUNCTION ? `PHONG_SPECULAR_POWER_LATENCY : `PHONG_SPECULAR_COSINE_LATENCY )
 
 // From the unit normal to the products of eq. (3).
 `define PHONG_SPECULAR_LATENCY \

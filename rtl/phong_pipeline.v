@@ -1,49 +1,48 @@
 // phong_pipeline: spans in, shaded pixels out, one pixel a clock (Bui Tuong Phong, 1975).
-// Spans become pixels; a unit for the technique gives them colours: Phong's own, or the paper's older
+// Spans become pixels; a unit for the technique gives them colours: Phong's own, or the paper's
+// older
 // ones, Gouraud's interpolated intensities or one intensity a face; a FIFO takes back-pressure.
 // Latency from an accepted span to its first pixel: PHONG_PIXEL_LATENCY + 3. Wiring in data order.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
 
-module phong_pipeline #(
-    parameter TECHNIQUE          = `PHONG_TECHNIQUE,
-    parameter NORMAL_METHOD      = `PHONG_NORMAL_METHOD,
-    parameter COORDINATE_BITS    = `PHONG_COORDINATE_BITS,
-    parameter MATERIAL_BITS      = `PHONG_MATERIAL_BITS,
-    parameter COLOUR_BITS        = `PHONG_COLOUR_BITS,
-    parameter COEFFICIENT_BITS   = `PHONG_COEFFICIENT_BITS,
-    parameter INDEX_BITS         = `PHONG_WEIGHT_INDEX_BITS,
-    parameter SPAN_BITS          = `PHONG_SPAN_BITS,
-    parameter IDLE_MATERIAL_BITS = `PHONG_IDLE_MATERIAL_BITS,
-    parameter PIXEL_BITS         = 2 * COORDINATE_BITS + 3 * COLOUR_BITS
-) (
+module phong_pipeline (
     input wire clk,
     input wire reset,  // synchronous; registers and material table keep their contents
 
     // write port for registers and material table (see register_map); hold during a frame;
     // the older techniques have neither
-    input wire                                write_enable,
-    input wire [MATERIAL_BITS+INDEX_BITS:0] write_address,
-    input wire [      2*COEFFICIENT_BITS:0] write_word,
+    input wire                                                   write_enable,
+    input wire [`PHONG_MATERIAL_BITS+`PHONG_WEIGHT_INDEX_BITS:0] write_address,
+    input wire [2*`PHONG_COEFFICIENT_BITS:0]                     write_word,
 
     // spans: {material, length, y, x, step z, y, x (s1.30), start z, y, x (s1.30)};
     // Gouraud: blue, green, red in place of z, y, x; flat: without the steps
-    input  wire                 s_axis_tvalid,
-    output wire                 s_axis_tready,
-    input  wire [SPAN_BITS-1:0] s_axis_tdata,
-    input  wire                 s_axis_tlast,   // last span of the frame
+    input  wire                        s_axis_tvalid,
+    output wire                        s_axis_tready,
+    input  wire [`PHONG_SPAN_BITS-1:0] s_axis_tdata,
+    input  wire                        s_axis_tlast,   // last span of the frame
 
     // pixels: {y, x, red, green, blue}
-    output wire                  m_axis_tvalid,
-    input  wire                  m_axis_tready,
-    output wire [PIXEL_BITS-1:0] m_axis_tdata,
-    output wire                  m_axis_tlast,   // last pixel of the frame
+    output wire                                                       m_axis_tvalid,
+    input  wire                                                       m_axis_tready,
+    output wire [(2*`PHONG_COORDINATE_BITS+3*`PHONG_COLOUR_BITS)-1:0] m_axis_tdata,
+    // last pixel of the frame
+    output wire                                                       m_axis_tlast,
 
     output wire illegal_span,  // for one clock: a span left its word, the counter, or was empty
     output wire zero_normal,   // for one clock: a pixel's normal is the zero vector
     output wire unsupported    // for one clock: a word or a span needs what this build leaves out
 );
+
+  localparam TECHNIQUE          = `PHONG_TECHNIQUE;
+  localparam NORMAL_METHOD      = `PHONG_NORMAL_METHOD;
+  localparam COORDINATE_BITS    = `PHONG_COORDINATE_BITS;
+  localparam MATERIAL_BITS      = `PHONG_MATERIAL_BITS;
+  localparam COLOUR_BITS        = `PHONG_COLOUR_BITS;
+  localparam SPAN_BITS          = `PHONG_SPAN_BITS;
+  localparam IDLE_MATERIAL_BITS = `PHONG_IDLE_MATERIAL_BITS;
 
   // ---- spans to pixels ----
   localparam VALUES_BITS = SPAN_BITS - MATERIAL_BITS - 3 * COORDINATE_BITS - 1;
@@ -87,8 +86,8 @@ module phong_pipeline #(
 
   generate
     if (TECHNIQUE == `PHONG_TECHNIQUE_PHONG
-        && NORMAL_METHOD == `PHONG_NORMAL_METHOD_DIFFERENCES) begin : gen_differences
-      differences_unit u_differences_unit (
+        && NORMAL_METHOD == `PHONG_NORMAL_METHOD_QUADRATIC_SPANS) begin : gen_quadratic_spans
+      quadratic_unit u_quadratic_unit (
           .clk(clk),
           .write_enable(write_enable),
           .write_address(write_address),

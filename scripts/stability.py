@@ -15,14 +15,15 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from model import adversarial, stability
-from model.config import DEFAULT as C
-from model.report import versions
-from model.scene import bundled_scenes
-from scripts.run import Steps
-from sim import stability as simulated
-from sim.build import BUILD, BuildError
-from sim.run_frame import SimulationError
+from phong75.model.analysis.run_report import versions
+from phong75.model.config import DEFAULT as C
+from phong75.model.front.scene import bundled_scenes
+from phong75.model.studies import adversarial, corner_cases
+from phong75.scripts.run import Steps
+from phong75.sim.build import BuildError
+from phong75.sim.design import BUILD
+from phong75.sim.frame import corner_cases as simulated
+from phong75.sim.frame.run_frame import SimulationError
 
 #: Version of the layout of report.json.
 SCHEMA = 2
@@ -32,11 +33,11 @@ LONG_RUN = 1_000_000
 LARGE = ("still_life", (3840, 2160))
 
 
-def adversarial_cases() -> list[stability.Case]:
+def adversarial_cases() -> list[corner_cases.Case]:
     """The worst input of each family, as cases."""
     names = {(f.limit, f.steep): f.name for f in adversarial.FAMILIES}
     return [
-        stability.Case(
+        corner_cases.Case(
             f"worst input, {names[row['limit'], row['steep']]}",
             "the input with the largest error that the search has found",
             f"an error of {row['error_lsb']:.4f} LSB, as found, within its bound",
@@ -48,7 +49,7 @@ def adversarial_cases() -> list[stability.Case]:
 
 
 def _as_found(row, frame, got) -> list[str]:
-    error = float(stability.errors(frame, got.rgb).max())
+    error = float(corner_cases.errors(frame, got.rgb).max())
     return [] if abs(error - row["error_lsb"]) < 1e-9 else [f"the error is {error:.6f} LSB"]
 
 
@@ -60,7 +61,7 @@ def scene_errors(cases, results) -> dict[adversarial.Family, float]:
         material = np.repeat(spans["material"], spans["length"])
         n = C.exponent.real(table.exponent)[material]
         constant = (np.ptp(table.weight, axis=1) == 0)[material]
-        error = stability.errors(case.frame, result.pixels.rgb)
+        error = corner_cases.errors(case.frame, result.pixels.rgb)
         for family in worst:
             belongs = (n <= family.limit) & (constant | family.steep)
             worst[family] = max(worst[family], float(error[belongs].max(initial=0)))
@@ -165,7 +166,7 @@ def power_row(rows: list[dict]) -> simulated.Row:
 def run(steps: Steps) -> dict:
     """All of it; returns the contents of report.json. Raises BuildError, SimulationError."""
     with steps.step("frames"):
-        cases = stability.cases() + adversarial_cases()
+        cases = corner_cases.cases() + adversarial_cases()
         scenes = [simulated.scene_case(name) for name in bundled_scenes()]
     with steps.step("cases") as progress:
         rows = simulated.run_cases(cases)

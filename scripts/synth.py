@@ -13,14 +13,15 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from model.config import DEFAULT, TECHNIQUES, Config
-from model.frame import InputError
-from model.pruning import prune
-from model.scene import load_scene
-from model.scene_to_spans import front_end
-from scripts import records, synthesis
-from scripts.records import Row
-from scripts.run import Steps
+from phong75.model.analysis.pruning import prune
+from phong75.model.config import DEFAULT, TECHNIQUES, Config
+from phong75.model.frame import InputError
+from phong75.model.front.scene import load_scene
+from phong75.model.front.scene_to_spans import front_end
+from phong75.scripts import recorded
+from phong75.scripts.recorded import Row
+from phong75.scripts.run import Steps
+from phong75.scripts.synthesis import ecp5
 
 CONFIGS = {config.name: config for config in TECHNIQUES.values()}
 
@@ -44,13 +45,13 @@ def parse(argv) -> tuple[Config, int, tuple[int, ...], bool]:
     name, grade, seeds = given.config or "default", given.grade or "6", given.seeds or "3"
     if name not in CONFIGS:
         raise InputError(f"CONFIG is `{name}`; there is {', '.join(CONFIGS)}")
-    if grade not in map(str, synthesis.GRADES):
+    if grade not in map(str, ecp5.GRADES):
         raise InputError(f"GRADE is `{grade}`; it must be 6 or 8")
     if not (seeds.isascii() and seeds.isdigit() and 1 <= int(seeds) <= 100):
         raise InputError(f"SEEDS is `{seeds}`, not a number from 1 to 100")
     if given.gates not in ("", "0", "1"):
         raise InputError(f"GATES is `{given.gates}`, not 0 or 1")
-    if given.gates == "1" and not synthesis.LIBERTY.is_file():
+    if given.gates == "1" and not ecp5.LIBERTY.is_file():
         raise InputError("GATES=1 needs a library of cells: apt-get install qflow-tech-osu018")
     config = CONFIGS[name]
     if given.scene:
@@ -137,15 +138,15 @@ def main(argv=None) -> int:
         return 2
     steps = Steps()
     try:
-        report = synthesis.run(config, grade, seeds, gates, steps.step)
-    except synthesis.SynthesisError as error:
+        report = ecp5.run(config, grade, seeds, gates, steps.step)
+    except ecp5.SynthesisError as error:
         print(f"Error: {error}", file=sys.stderr)
         return 1
     Console().print(table(report))
     if config == DEFAULT:
         packages = tuple(report["tools"])
         command = "make synth" + (f" GRADE={grade}" if grade != 6 else "")
-        records.save(f"synth-grade{grade}", command, packages, rows(report))
+        recorded.save(f"synth-grade{grade}", command, packages, rows(report))
     print(f"build/synth/{config.name}/report.json")
     return 0
 

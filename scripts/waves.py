@@ -13,12 +13,14 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from model.config import DEFAULT as CONFIG
-from model.frame import InputError
-from model.scene import load_scene
-from model.scene_to_spans import front_end
-from sim.build import BUILD, RTL, Bench, BuildError
-from sim.run_frame import Job, SimulationError, simulate_jobs
+from phong75.model.config import DEFAULT as CONFIG
+from phong75.model.frame import InputError
+from phong75.model.front.scene import load_scene
+from phong75.model.front.scene_to_spans import front_end
+from phong75.sim import design
+from phong75.sim.build import Bench, BuildError
+from phong75.sim.design import BUILD
+from phong75.sim.frame.run_frame import Job, SimulationError, simulate_jobs
 
 TOP = "phong_pipeline"
 SIZE = (24, 16)
@@ -56,13 +58,13 @@ def scopes(vcd: Path) -> list[Scope]:
 def instances(module: str) -> set[str]:
     """The instance names of `module` in the design."""
     pattern = re.compile(rf"^\s*{module}\b[^;]*?\b(u_\w+)\s*\(\s*$", re.MULTILINE | re.DOTALL)
-    names = {name for file in RTL.glob("*.v") for name in pattern.findall(file.read_text())}
+    names = {name for file in design.sources() for name in pattern.findall(file.read_text())}
     return names | ({"dut"} if module == TOP else set())
 
 
 def ports(module: str) -> set[str]:
     """The names of the ports of `module`."""
-    text = (RTL / f"{module}.v").read_text()
+    text = design.module_file(module).read_text()
     return set(re.findall(r"^\s*(?:input|output)\s+(?:wire|reg).*?(\w+)\s*[,)]?\s*(?://.*)?$", text,
                           re.MULTILINE))  # fmt: skip
 
@@ -88,7 +90,7 @@ def save_file(vcd: Path, module: str) -> str:
             chosen.sort(key=_stage)
             groups.append((f"{leaf} {title}", [f"{scope.path}.{s}" for s in chosen]))
     if len(groups) < 2:
-        known = sorted(file.stem for file in RTL.glob("*.v") if instances(file.stem))
+        known = sorted(file.stem for file in design.sources() if instances(file.stem))
         raise InputError(f"MODULE is `{module}`, not one of {', '.join(known)}")
     lines = [f'[dumpfile] "{vcd.name}"']
     for title, signals in groups:
@@ -110,8 +112,8 @@ def _stage(signal: str) -> tuple[int, str]:
 def main(argv: list[str]) -> int:
     """Write the two files; returns the exit code."""
     module = argv[0] if argv else TOP
-    if not (RTL / f"{module}.v").is_file() or not instances(module):
-        known = sorted(file.stem for file in RTL.glob("*.v") if instances(file.stem))
+    if design.module_file(module) is None or not instances(module):
+        known = sorted(file.stem for file in design.sources() if instances(file.stem))
         print(f"MODULE is `{module}`, not one of {', '.join(known)}", file=sys.stderr)
         return 2
     folder = BUILD / "waves"

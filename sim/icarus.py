@@ -12,8 +12,10 @@ from pathlib import Path
 
 from cocotb_tools.runner import Icarus
 
-from model.config import DEFAULT, Config
-from sim.build import BUILD, RTL, SIM, BuildError, generate_header
+from phong75.model.config import DEFAULT, Config
+from phong75.sim import design
+from phong75.sim.build import BuildError, generate_header
+from phong75.sim.design import BUILD, SIM
 
 #: Of the vectors of the datapath's tests, one in so many.
 THIN = 400
@@ -42,12 +44,13 @@ class IcarusBench(Icarus):
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in self._texts.items():
             (made / name).write_text(text)
-        top = made if f"{self._top}.v" in self._texts else SIM
+        name = f"{self._top}.v"
+        top = made / name if name in self._texts else SIM / "module" / name
         log = made / "iverilog.log"
         try:
             self.build(
-                sources=[*sorted(RTL.glob("*.v")), top / f"{self._top}.v"],
-                includes=[generate_header(self._config), RTL, SIM],
+                sources=[*design.sources(), top],
+                includes=[generate_header(self._config), *design.folders()],
                 hdl_toplevel=self._top, build_dir=made, log_file=log, always=True,
                 timescale=("1ns", "1ns"),
             )  # fmt: skip

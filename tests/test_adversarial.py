@@ -1,24 +1,28 @@
 """The worst inputs found, replayed in RTL, and the search that found them."""
 
+import sys
+
 import numpy as np
 import pytest
 
-from model import adversarial, error_budget, reference, stability, twin
-from model.adversarial import FAMILIES
-from model.config import DEFAULT as C
-from model.scene import bundled_scenes
-from model.spans import illegal_spans
-from scripts.stability import (
+from phong75.model import twin
+from phong75.model.analysis import error_budget, reference
+from phong75.model.config import DEFAULT as C
+from phong75.model.front.scene import bundled_scenes
+from phong75.model.spans import illegal_spans
+from phong75.model.studies import adversarial, corner_cases
+from phong75.model.studies.adversarial import FAMILIES
+from phong75.scripts.stability import (
     adversarial_cases,
     error_lines,
     error_rows,
     power_row,
     scene_errors,
 )
-from sim import stability as table
-from sim.build import ROOT
+from phong75.sim.design import PACKAGE
+from phong75.sim.frame import corner_cases as table
 
-README = (ROOT / "README.md").read_text()
+README = (PACKAGE / "README.md").read_text()
 QUICK = {"points": 512, "rounds": 60, "examples": 60, "climbs": 1}
 
 
@@ -37,7 +41,7 @@ def test_the_worst_inputs_come_out_of_the_rtl_as_found():
 
 def test_the_rows_are_counted():
     single = ("shared edges", "powers", "long run", "large frame")
-    rows = len(stability.cases()) + len(FAMILIES) + len(bundled_scenes()) + len(single)
+    rows = len(corner_cases.cases()) + len(FAMILIES) + len(bundled_scenes()) + len(single)
     assert f"runs {rows} stiff and extreme cases" in README
 
 
@@ -78,7 +82,7 @@ def test_the_search_sees_a_bound_that_is_too_low(monkeypatch):
         shift = 2 * config.unit.fraction - config.versine.fraction
         return np.clip(v >> shift, 0, config.versine.max)
 
-    monkeypatch.setattr(twin.shading_unit, "reflection", papers)
+    monkeypatch.setattr(sys.modules["phong75.model.twin.core.shading_unit"], "reflection", papers)
     found = adversarial.search(FAMILIES[2], **QUICK)
     assert found["error_lsb"] > FAMILIES[2].bound_lsb()
 

@@ -14,12 +14,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from model import twin
-from model.config import DEFAULT
-from model.spans import read_spans
-from scripts import run
-from sim.build import BuildError
-from sim.run_frame import SimResult, SimulationError
+from phong75.model import twin
+from phong75.model.config import DEFAULT
+from phong75.model.spans import read_spans
+from phong75.scripts import run
+from phong75.sim.build import BuildError
+from phong75.sim.frame.run_frame import SimResult, SimulationError
 
 ROOT = Path(__file__).resolve().parent.parent
 FILES = ["error.png", "frame.png", "reference.png", "report.json", "spans"]
@@ -383,7 +383,7 @@ def outside(*command, **environment):
 
 
 def test_the_program_without_traceback():
-    done = outside(sys.executable, "-m", "scripts.run", "--size=0x0")
+    done = outside(sys.executable, "-m", "phong75.scripts.run", "--size=0x0")
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == "Error: SIZE is 0x0: each side must be from 1 to 4096\n"
 

@@ -8,14 +8,16 @@ import shutil
 import numpy as np
 import pytest
 
-from model.config import DEFAULT as C
-from model.scene import load_scene
-from model.scene_to_spans import front_end
-from model.twin import render
-from scripts import synth, synthesis
-from sim.benches import module_bench
-from sim.build import RTL, SIM, Bench
-from sim.run_frame import Job, simulate_jobs
+from phong75.model.config import DEFAULT as C
+from phong75.model.front.scene import load_scene
+from phong75.model.front.scene_to_spans import front_end
+from phong75.model.twin import render
+from phong75.scripts import synth
+from phong75.scripts.synthesis import ecp5 as synthesis
+from phong75.sim import design
+from phong75.sim.build import Bench
+from phong75.sim.frame.run_frame import Job, simulate_jobs
+from tests.modules.benches import module_bench
 from tests.test_modules import run
 
 
@@ -23,7 +25,11 @@ from tests.test_modules import run
 def ecp5(tmp_path_factory):
     """A copy of the design with the technology's modules in it, and models of the blocks."""
     folder = tmp_path_factory.mktemp("ecp5")
-    files = [*synthesis.sources(), *RTL.glob("*.vh"), *(SIM / "ecp5").glob("*.v")]
+    files = [
+        *design.sources(technology=design.ECP5),
+        *design.headers(),
+        *(design.SIM / "ecp5").glob("*.v"),
+    ]
     for file in files:
         shutil.copy(file, folder)
     return folder
@@ -44,7 +50,7 @@ def test_whole_frame(ecp5):
 
 
 def test_the_technology_replaces_what_it_has():
-    plain, ecp5 = ({f.name: f for f in synthesis.sources(t)} for t in (None, RTL / "ecp5"))
+    plain, ecp5 = ({f.name: f for f in design.sources(technology=t)} for t in (None, design.ECP5))
     assert set(ecp5) - set(plain) == {"block_ram.v"} and "harness.v" not in ecp5
     replaced = {name for name in plain if ecp5[name] != plain[name]}
     assert replaced == {"multiplier.v", "rom.v", "ram.v"}

@@ -6,25 +6,25 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from model import error_budget as budget
-from model import reference
-from model.config import DEFAULT as C
-from model.frame import SPAN_DTYPE, Frame, InputError, MaterialTable, half_vector_codes
-from model.metrics import error_metrics
-from model.sweep import CONFIGS
-from model.twin import render
-from model.twin.difference_normalizer import difference_normalizer
-from model.twin.differences_unit import interpolate
-from model.twin.inverse_sqrt import inverse_sqrt
-from model.twin.inverse_sqrt_method import inverse_sqrt_method
-from model.twin.normalizer import normalizer
-from model.twin.phong_pipeline import shade
-from model.twin.power_schlick import power_schlick
-from model.twin.power_squaring import power_squaring
-from model.twin.reflection import reflection
-from model.twin.specular_power import specular_power
-from model.twin.specular_weight import specular_weight
-from model.twin.versine_of_parts import versine_of_parts
+from phong75.model.analysis import error_budget as budget
+from phong75.model.analysis import reference
+from phong75.model.analysis.metrics import error_metrics
+from phong75.model.config import DEFAULT as C
+from phong75.model.frame import SPAN_DTYPE, Frame, InputError, MaterialTable, half_vector_codes
+from phong75.model.studies.methods import CONFIGS
+from phong75.model.twin import render
+from phong75.model.twin.core.inverse_sqrt import inverse_sqrt
+from phong75.model.twin.core.inverse_sqrt_linear import inverse_sqrt_linear
+from phong75.model.twin.core.normalizer import normalizer
+from phong75.model.twin.core.reflection import reflection
+from phong75.model.twin.core.specular_power_tables import specular_power_tables
+from phong75.model.twin.core.specular_weight import specular_weight
+from phong75.model.twin.core.versine_of_cross import versine_of_cross
+from phong75.model.twin.methods.quadratic_normalizer import quadratic_normalizer
+from phong75.model.twin.methods.quadratic_unit import interpolate
+from phong75.model.twin.methods.specular_power_schlick import specular_power_schlick
+from phong75.model.twin.methods.specular_power_squaring import specular_power_squaring
+from phong75.model.twin.phong_pipeline import shade
 
 RNG = np.random.default_rng(75)
 ANGLES = (0.0, 0.3, 1.0, np.pi / 2, 2.5, 3.1, np.pi)
@@ -64,8 +64,8 @@ def exact(normal, frame):
 
 def test_inverse_sqrt_every_operand_within_its_bound():
     operand = np.arange(C.root_operand.one, 4 * C.root_operand.one)
-    error = C.root.real(inverse_sqrt(operand, C)) * np.sqrt(C.root_operand.real(operand)) - 1
-    assert np.abs(error).max() <= budget.inverse_sqrt(C)
+    error = C.root.real(inverse_sqrt_linear(operand, C)) * np.sqrt(C.root_operand.real(operand)) - 1
+    assert np.abs(error).max() <= budget.inverse_sqrt_linear(C)
     assert -np.log2(np.abs(error).max()) > 17.4  # good bits
 
 
@@ -74,18 +74,18 @@ def test_inverse_sqrt_every_operand_within_its_bound():
 )
 def test_other_methods_for_inverse_sqrt_within_their_bounds(config):
     operand = np.arange(config.root_operand.one, 4 * config.root_operand.one)
-    root = config.root.real(inverse_sqrt_method(operand, config))
+    root = config.root.real(inverse_sqrt(operand, config))
     error = np.abs(root * np.sqrt(config.root_operand.real(operand)) - 1).max()
-    assert error <= budget.inverse_sqrt(config) <= 2.2 * error
+    assert error <= budget.inverse_sqrt_linear(config) <= 2.2 * error
 
 
-def test_the_magic_start_is_what_float32_gives():
-    config = CONFIGS["magic_0"]
+def test_the_fast_inverse_start_is_what_float32_gives():
+    config = CONFIGS["fast_inverse_0"]
     operand = np.arange(config.root_operand.one, 4 * config.root_operand.one)
     x = config.root_operand.real(operand).astype(np.float32)
     y = (0x5F3759DF - (x.view(np.int32) >> 1)).view(np.float32)
     codes = np.floor(np.ldexp(y.astype(float), config.root.fraction))
-    assert np.array_equal(inverse_sqrt_method(operand, config), codes)
+    assert np.array_equal(inverse_sqrt(operand, config), codes)
 
 
 @pytest.mark.parametrize("bits", [12, 18])
@@ -93,16 +93,16 @@ def test_the_magic_start_is_what_float32_gives():
 def test_squaring_within_its_bound(bits, n):
     config = CONFIGS[f"squaring_{bits}"]
     v = np.arange(0, config.versine.one, 7)
-    power = power_squaring(v, np.full(len(v), n * config.exponent.one), config)
+    power = specular_power_squaring(v, np.full(len(v), n * config.exponent.one), config)
     error = np.abs(config.power.real(power) - (1 - config.versine.real(v)) ** n).max()
-    assert error <= budget.specular_power(n, config) <= 4 * error
+    assert error <= budget.specular_power_tables(n, config) <= 4 * error
 
 
 def test_squaring_rounds_n():
     config = CONFIGS["squaring_18"]
     v = np.arange(0, config.versine.one, 101)
     for n, whole in ((1.5, 2), (2.25, 2), (127.5, 128)):
-        codes = [power_squaring(v, np.full(len(v), config.exponent.quantize(k)), config)
+        codes = [specular_power_squaring(v, np.full(len(v), config.exponent.quantize(k)), config)
                  for k in (n, whole)]  # fmt: skip
         assert np.array_equal(*codes)
     assert not budget.derived(config, 1.5) and budget.derived(config, 2.0)
@@ -112,7 +112,7 @@ def test_squaring_rounds_n():
 def test_schlick_is_schlicks_formula(n):
     config = CONFIGS["schlick_18"]
     v = np.arange(0, config.versine.one, 7)
-    power = power_schlick(v, np.full(len(v), config.exponent.quantize(n)), config)
+    power = specular_power_schlick(v, np.full(len(v), config.exponent.quantize(n)), config)
     x = 1 - config.versine.real(v)
     # v rounded, times n - 1, against a denominator of 1 or more; five roundings and cuts.
     bound = (n - 1) * config.power.lsb / 2 + 5 * config.power.lsb
@@ -120,7 +120,7 @@ def test_schlick_is_schlicks_formula(n):
 
 
 def test_inverse_sqrt_of_zero_is_the_largest_code():
-    assert inverse_sqrt(np.array([0]), C) == C.root.max
+    assert inverse_sqrt_linear(np.array([0]), C) == C.root.max
 
 
 @pytest.mark.parametrize("shrink", [0, 10, 20, 28])
@@ -159,7 +159,7 @@ def test_versine_of_dot_products_within_its_bound(angle, bits):
     normal = normals_near(half, 100, 200_000) >> (C.normal.bits - config.normal.bits)
     normal = normal[:, np.abs(normal).max(axis=0) > 0]
     unit, cosine, _ = normalizer(normal, False, config, half_vector=half)
-    v = config.versine.real(versine_of_parts(unit[1], unit[0], config))
+    v = config.versine.real(versine_of_cross(unit[1], unit[0], config))
     true = normal / np.linalg.norm(normal.astype(float), axis=0)
     eye = reference.eye_of(half)
     v_true = 1 - (2 * true[2] * (eye @ true) - eye[2])
@@ -190,7 +190,7 @@ def _frame(spans, half_vector, config, n=10.0):
 @pytest.mark.parametrize("angle", ANGLES)
 @pytest.mark.parametrize("length", [1, 14, 425])
 def test_differences_within_their_bounds(length, angle, bits):
-    config = CONFIGS[f"differences_{bits}"]
+    config = CONFIGS[f"quadratic_spans_{bits}"]
     eye = np.array([np.sin(angle), 0, np.cos(angle)])
     half = half_vector_codes(eye, config)
     eye = reference.eye_of(half)
@@ -206,8 +206,8 @@ def test_differences_within_their_bounds(length, angle, bits):
     largest = np.zeros(2)
     for k in sorted({0, 1, length // 2, length - 1} & set(range(length))):
         place = np.full(len(spans), k)
-        z, square, across = interpolate(frame, np.arange(len(spans)), place, config)
-        v, cosine, _ = difference_normalizer(z, square, across, True, config)
+        z, square, cross = interpolate(frame, np.arange(len(spans)), place, config)
+        v, cosine, _ = quadratic_normalizer(z, square, cross, True, config)
         true = config.normal.real(spans["start"]) + k * config.normal.real(spans["step"])
         length_2 = (true**2).sum(axis=1)
         assert np.abs(config.squared.real(square) / length_2 - 1).max() <= bound * (1 + 1e-6)
@@ -223,17 +223,17 @@ def test_differences_within_their_bounds(length, angle, bits):
 
 
 @pytest.mark.parametrize("bits", [12, 14, 16, 18])
-def test_differences_see_no_highlight_across_h(bits):
+def test_differences_see_no_highlight_cross_h(bits):
     """|N x h|**2 = |N|**2 just below a power of 4, and codes of h that are longer than 1: the other
     square must not leave the word that the first is aligned to."""
-    config, longer = CONFIGS[f"differences_{bits}"], 0
+    config, longer = CONFIGS[f"quadratic_spans_{bits}"], 0
     for angle in np.linspace(1.7, 3.1, 60):
         half = half_vector_codes(np.array([np.sin(angle), 0, np.cos(angle)]), config)
         longer += np.hypot(*half) > config.half_vector.one
-        across = np.array([-half[1], 0, half[0]]) / np.hypot(*half) * (1 - config.normal.lsb)
+        cross = np.array([-half[1], 0, half[0]]) / np.hypot(*half) * (1 - config.normal.lsb)
         spans = np.zeros(3, SPAN_DTYPE)
         spans["length"] = 1
-        spans["start"] = config.normal.quantize(across / np.array([[1], [2], [4]]))
+        spans["start"] = config.normal.quantize(cross / np.array([[1], [2], [4]]))
         frame = _frame(spans, half, config)
         assert np.abs(reference.render(frame, config)).max() < 1e-6
         assert (render(frame, config).rgb == 0).all(), angle
@@ -241,7 +241,7 @@ def test_differences_see_no_highlight_across_h(bits):
 
 
 def test_differences_have_no_bound_where_they_may_fail():
-    config = CONFIGS["differences_18"]
+    config = CONFIGS["quadratic_spans_18"]
     half = half_vector_codes(np.array([0.6, 0, 0.8]), config)
 
     def bound(start, end, length):
@@ -263,10 +263,10 @@ def test_differences_have_no_bound_where_they_may_fail():
 @pytest.mark.parametrize("n", [1, 1.5, 2, 10, 20, 32, 64, 127.5, 128])
 def test_power_within_its_bound_and_the_specified_one(n):
     v = np.arange(0, C.versine.one, 3)
-    power = C.power.real(specular_power(v, np.full(len(v), C.exponent.quantize(n)), C))
+    power = C.power.real(specular_power_tables(v, np.full(len(v), C.exponent.quantize(n)), C))
     error = np.abs(power - (1 - C.versine.real(v)) ** n).max()
-    assert error <= budget.specular_power(n, C)
-    assert budget.specular_power(n, C) <= (2**-14 if n <= 32 else 2**-12)
+    assert error <= budget.specular_power_tables(n, C)
+    assert budget.specular_power_tables(n, C) <= (2**-14 if n <= 32 else 2**-12)
     if n == 20:  # 50 M powers/s, 12.3 k gates, max error 0.00141 (AMM 229-231.1146, 2012)
         assert error <= 0.00141 / 10
 
@@ -274,10 +274,10 @@ def test_power_within_its_bound_and_the_specified_one(n):
 def test_power_against_mpmath():
     v = RNG.integers(0, C.versine.one, 300)
     n = RNG.integers(C.exponent.one, 128 * C.exponent.one, 300)
-    power = specular_power(v, n, C)
+    power = specular_power_tables(v, n, C)
     for vk, nk, pk in zip(v.tolist(), n.tolist(), power.tolist(), strict=True):
         true = (1 - mpmath.mpf(vk) / C.versine.one) ** (mpmath.mpf(nk) / C.exponent.one)
-        assert abs(pk / mpmath.mpf(C.power.one) - true) <= budget.specular_power(
+        assert abs(pk / mpmath.mpf(C.power.one) - true) <= budget.specular_power_tables(
             nk / C.exponent.one, C
         )
 

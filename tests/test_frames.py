@@ -5,32 +5,35 @@ import shutil
 import numpy as np
 import pytest
 
-from model import metrics, twin
-from model.config import DEFAULT as C
-from model.scene import bundled_scenes, load_scene
-from model.scene_to_spans import front_end
-from scripts import results
-from sim.build import ROOT, RTL, Bench
-from sim.locate import locate
-from sim.run_frame import Job, simulate_jobs
+from phong75.model import twin
+from phong75.model.analysis import metrics
+from phong75.model.config import DEFAULT as C
+from phong75.model.front.scene import bundled_scenes, load_scene
+from phong75.model.front.scene_to_spans import front_end
+from phong75.scripts import scene_results
+from phong75.sim import design
+from phong75.sim.build import Bench
+from phong75.sim.design import PACKAGE
+from phong75.sim.frame.locate import locate
+from phong75.sim.frame.run_frame import Job, simulate_jobs
 
-README = (ROOT / "README.md").read_text()
+README = (PACKAGE / "README.md").read_text()
 
 
 @pytest.mark.parametrize("scene", bundled_scenes())
 def test_bundled_scene(scene):
     """RTL = model, in the derived bound, 99.9 % rounded right, 30 frames/s, as the README says."""
-    measured = results.measure(scene)
-    for size, result in zip(results.SIZES, measured, strict=True):
+    measured = scene_results.measure(scene)
+    for size, result in zip(scene_results.SIZES, measured, strict=True):
         what, done = f"{scene} at {size}", result.simulation
         assert result.mismatches == 0, f"{what}: {result.first}"
         assert done.complete and not done.extra_pixels and not done.illegal_spans, what
         assert done.stall_cycles == 0, what
-        assert result.max_fps >= results.FPS, what
+        assert result.max_fps >= scene_results.FPS, what
         assert result.error["max_lsb"] <= result.bound_lsb <= 1, what
         assert result.error["correctly_rounded"] >= 0.999, what
         assert done.pixels.last.sum() == 1 and done.pixels.last[-1], what
-    assert results.row(scene, measured) in README, "the README's table is old: make results"
+    assert scene_results.row(scene, measured) in README, "the README's table is old: make results"
 
 
 def test_each_dot_is_shaded_once():
@@ -57,11 +60,11 @@ def test_no_pixel_depends_on_what_registers_hold_at_power_up(seed):
 def test_a_broken_design_fails_and_is_located(tmp_path):
     """The check can fail: 1 - cos(s) from p*q in place of p*p, and the stage is named."""
     rtl = tmp_path / "rtl"
-    shutil.copytree(RTL, rtl)
-    text = (rtl / "versine_of_parts.v").read_text()
-    broken = text.replace(".b(p),", ".b(q),")
+    shutil.copytree(design.RTL, rtl)
+    text = (rtl / "core" / "versine_of_cross.v").read_text()
+    broken = text.replace(".b(cross_xz),", ".b(cross_y),")
     assert broken != text
-    (rtl / "versine_of_parts.v").write_text(broken)
+    (rtl / "core" / "versine_of_cross.v").write_text(broken)
     frame = front_end(load_scene("sphere", (64, 48))).frame
     result = simulate_jobs([Job(frame)], C, Bench("frame_bench", C, rtl=rtl))[0]
     comparison = metrics.compare(twin.render(frame), result.pixels)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from model.frame import InputError
-from model.mesh import (
+from phong75.model.frame import InputError
+from phong75.model.front.mesh import (
     Mesh,
     corner_normals,
     face_normals,

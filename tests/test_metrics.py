@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from model.metrics import compare, error_metrics, rounded
+from phong75.model.analysis.metrics import compare, error_metrics, rounded
 
 
 def stream(rows):

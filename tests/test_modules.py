@@ -9,13 +9,13 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from model.config import DEFAULT as C
-from model.config import TECHNIQUES
-from model.spans import illegal_spans
-from model.twin import render
-from sim.benches import NAMES, ModuleBench, module_bench
-from sim.build import Bench
-from sim.run_frame import Job, simulate_jobs
+from phong75.model.config import DEFAULT as C
+from phong75.model.config import TECHNIQUES
+from phong75.model.spans import illegal_spans
+from phong75.model.twin import render
+from phong75.sim.build import Bench
+from phong75.sim.frame.run_frame import Job, simulate_jobs
+from tests.modules.benches import NAMES, ModuleBench, module_bench
 from tests.modules.frames import random_frame
 
 SEED = 75

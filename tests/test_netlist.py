@@ -2,12 +2,13 @@
 
 import json
 
-from model import metrics, twin
-from model.scene import load_scene
-from model.scene_to_spans import front_end
-from scripts import netlist, records
-from sim.build import BUILD
-from sim.run_frame import Job, simulate_jobs
+from phong75.model import twin
+from phong75.model.analysis import metrics
+from phong75.model.front.scene import load_scene
+from phong75.model.front.scene_to_spans import front_end
+from phong75.scripts import netlist, recorded
+from phong75.sim.design import BUILD
+from phong75.sim.frame.run_frame import Job, simulate_jobs
 
 
 def test_resources_and_a_frame_in_ecp5_cells():
@@ -18,7 +19,7 @@ def test_resources_and_a_frame_in_ecp5_cells():
     # Flow control is reset (of the normalizer a flag), the datapath is not: nothing waits for data
     # to be flushed.
     assert set(synthesis["resets"]) == {"span_walker", "normalizer", "pixel_fifo"}
-    record = records.load("synth-grade6")
+    record = recorded.load("synth-grade6")
     said = " ".join(row["figure"] for row in record["rows"])
     counted = [f"{resources['dsp']} MULT18X18D, {resources['ebr']} DP16KD",
                f"{resources['lut']} LUT4, {resources['carry']} carry cells"]  # fmt: skip

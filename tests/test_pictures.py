@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from model.config import DEFAULT
-from model.frame import SPAN_DTYPE, Frame, MaterialTable
-from model.pictures import canvas, write_error_map, write_picture
+from phong75.model.analysis.pictures import canvas, write_error_map, write_picture
+from phong75.model.config import DEFAULT
+from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable
 
 
 @pytest.fixture

@@ -7,27 +7,29 @@ import dataclasses
 import numpy as np
 import pytest
 
-from model import metrics, pruning, twin
-from model.config import DEFAULT as C
-from model.config import digits, levels
-from model.frame import Frame, MaterialTable
-from model.registers import writes
-from model.scene import bundled_scenes, load_scene
-from model.scene_to_spans import front_end
-from model.twin.specular_power import specular_power
-from scripts import prune, records
-from sim.build import ROOT, Bench
-from sim.elaborate import instances
-from sim.latency import latencies
-from sim.run_frame import Job, simulate_jobs
-from tests.trials import (
+from phong75.model import twin
+from phong75.model.analysis import metrics, pruning
+from phong75.model.config import DEFAULT as C
+from phong75.model.config import digits, levels
+from phong75.model.frame import Frame, MaterialTable
+from phong75.model.front.scene import bundled_scenes, load_scene
+from phong75.model.front.scene_to_spans import front_end
+from phong75.model.registers import writes
+from phong75.model.twin.core.specular_power_tables import specular_power_tables
+from phong75.scripts import prune, recorded
+from phong75.sim.build import Bench
+from phong75.sim.design import PACKAGE
+from phong75.sim.elaborate import instances
+from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.latency import latencies
+from tests.configuration_tests import (
     ALONE,
     Trial,
     dull,
     grey,
     misfits,
     narrow,
-    no_environment,
+    no_ambient,
     one_diffuse,
     one_sided,
     plain,
@@ -87,7 +89,7 @@ def test_an_empty_frame_needs_nothing():
     frame = plain()
     frame.spans = frame.spans[:0]
     pruned, _ = pruning.prune(frame)
-    assert not (pruned.specular or pruned.diffuse or pruned.environment)
+    assert not (pruned.specular or pruned.diffuse or pruned.ambient)
     assert len(twin.render(frame, pruned).x) == 0
 
 
@@ -96,8 +98,8 @@ def test_powers_of_large_exponents_vanish_below_one_half():
     below it."""
     v = np.arange(C.versine.one // 2, C.versine.max + 1)
     least = pruning.vanishing_exponent(C)
-    assert not specular_power(v, np.full(len(v), least), C).any()
-    assert specular_power(v[:1], np.array([least - C.exponent.one]), C).any()
+    assert not specular_power_tables(v, np.full(len(v), least), C).any()
+    assert specular_power_tables(v[:1], np.array([least - C.exponent.one]), C).any()
 
 
 def test_digits_of_constants():
@@ -146,7 +148,7 @@ def test_other_methods_are_pruned_to_their_own_pixels(method):
 
 
 def test_a_method_without_a_guard_is_left_whole():
-    config = dataclasses.replace(C, normal_method="differences")
+    config = dataclasses.replace(C, normal_method="quadratic_spans")
     pruned, rows = pruning.prune(plain(), config)
     assert pruned == config and all(row.needed for row in rows)
 
@@ -165,7 +167,9 @@ def test_a_sharp_power_is_the_same_without_octaves():
     without_octaves = dataclasses.replace(C, log_octaves=False)
     v = np.arange(C.versine.max + 1)
     n = np.full(len(v), pruning.vanishing_exponent(C))
-    assert np.array_equal(specular_power(v, n, C), specular_power(v, n, without_octaves))
+    assert np.array_equal(
+        specular_power_tables(v, n, C), specular_power_tables(v, n, without_octaves)
+    )
 
 
 # -- safety ----------------------------------------------------------------------------------------
@@ -174,10 +178,10 @@ def test_a_sharp_power_is_the_same_without_octaves():
 def test_what_does_not_fit_is_flagged():
     """Frames that need each feature in turn, on a build that has none of them."""
     bare = plain(SEED, 40)
-    for change in (dull, no_environment, grey, one_sided, one_diffuse):
+    for change in (dull, no_ambient, grey, one_sided, one_diffuse):
         change(bare, np.random.default_rng(SEED))
     config, _ = pruning.prune(bare)
-    assert not (config.specular or config.environment or config.two_sided) and config.channels == 1
+    assert not (config.specular or config.ambient or config.two_sided) and config.channels == 1
 
     def need(**parts) -> Frame:
         table = MaterialTable(*(getattr(bare.materials, n).copy() for n in
@@ -194,7 +198,7 @@ def test_what_does_not_fit_is_flagged():
 
     wanted = {
         "specular": need(weight=C.coefficient.one // 3),
-        "environment": need(ambient=7),
+        "ambient": need(ambient=7),
         "channels": need(diffuse=np.array(bare.materials.diffuse[5]) // np.array([1, 2, 3])),
         "two_sided": need(two_sided=True),
         "constant_diffuse": need(diffuse=bare.materials.diffuse[5] ^ 1),
@@ -239,8 +243,8 @@ def test_latency_falls():
 
 def test_the_readme_shows_the_last_measurement_of_these_builds():
     """The table is that of the record, and the record is of the builds of today's analysis."""
-    record = records.load("prune")
-    assert prune.for_readme(record) in (ROOT / "README.md").read_text()
+    record = recorded.load("prune")
+    assert prune.for_readme(record) in (PACKAGE / "README.md").read_text()
     today = {case.name: case for case in prune.cases()}
     assert [found["name"] for found in record["table"]] == list(today)
     for found in record["table"]:
@@ -253,7 +257,7 @@ def test_the_bars():
     """DSP multipliers: 8 for diffuse colour, 6 for grey, none for the older techniques, and for
     the teapot a quarter fewer than in the full design; measured, and as it is elaborated. No
     pruned build simulates slower than the full one."""
-    rows = {found["name"]: found for found in records.load("prune")["table"]}
+    rows = {found["name"]: found for found in recorded.load("prune")["table"]}
     for name, found in rows.items():
         pruned, of_full = (found[key]["simulation_clocks_per_s"] for key in ("pruned", "full"))
         assert pruned >= of_full, name

@@ -4,24 +4,32 @@ import re
 
 import numpy as np
 
-from model import error_budget, registers, spans
-from model.config import DEFAULT as C
-from model.config import TECHNIQUES
-from model.sweep import CONFIGS
-from scripts import mutate, records
-from sim.build import ROOT, RTL
-from sim.elaborate import instances
-from sim.formal.proofs import PROOFS
-from sim.latency import latencies
+from phong75.model import registers, spans
+from phong75.model.analysis import error_budget
+from phong75.model.config import DEFAULT as C
+from phong75.model.config import TECHNIQUES
+from phong75.model.studies.methods import CONFIGS
+from phong75.scripts import recorded
+from phong75.sim import design
+from phong75.sim.design import PACKAGE
+from phong75.sim.elaborate import instances
+from phong75.sim.formal.proofs import PROOFS
+from phong75.sim.latency import latencies
+from tests.campaigns import mutation
 from tests.test_error import frame_of
 
-README = (ROOT / "README.md").read_text()
+README = (PACKAGE / "README.md").read_text()
 
 
 def test_latencies():
     of = latencies()
     assert f"{of['normalizer']} clocks       {of['shading_unit']} clocks" in README
-    parts = {"reflection": 0, "specular_power": 0, "specular_weight": 0, "inverse_sqrt": 0}
+    parts = {
+        "reflection": 0,
+        "specular_power_tables": 0,
+        "specular_weight": 0,
+        "inverse_sqrt_linear": 0,
+    }
     for block in parts:
         assert f"{block} ({of[block]})" in README, block
     assert f"colour_channel ×3 ({of['colour_channel']})" in README
@@ -60,22 +68,22 @@ def test_the_multipliers_are_counted():
 
 
 def test_the_table_of_hardware_is_that_of_the_records():
-    assert records.table() in README, "the README's table is old: make hardware"
+    assert recorded.table() in README, "the README's table is old: make hardware"
 
 
 def test_the_proofs_are_counted():
     unbounded = sum(proof.mode == "prove" for proof in PROOFS)
-    twins = sum(len(proof.twins) for proof in PROOFS)
+    twins = sum(len(proof.broken_designs) for proof in PROOFS)
     said = (
         f"{len(PROOFS)} of {len(PROOFS)} proofs hold, {unbounded} of them by unbounded induction; "
         f"{twins} of {twins} broken designs fail"
     )
-    assert said in records.table(), "the record is old: make formal"
+    assert said in recorded.table(), "the record is old: make formal"
 
 
 def test_the_explained_mutants_exist():
-    files = sorted(RTL.glob("*.v*"))
-    assert set(mutate.explained()) <= {m.key for path in files for m in mutate.mutants(path)}
+    files = [*design.sources(), *design.headers()]
+    assert set(mutation.explained()) <= {m.key for path in files for m in mutation.mutants(path)}
 
 
 def test_the_python_example_runs(capsys):
@@ -86,7 +94,7 @@ def test_the_python_example_runs(capsys):
 
 def test_the_spread_of_clocks():
     """Those whose longest path starts in what all configurations share; and what goes beyond."""
-    by_name = records.load("clocks")["configurations"]
+    by_name = recorded.load("clocks")["configurations"]
     kept, text = by_name.values(), " ".join(README.split())
     starts = ("span_walker", "pixel_fifo", "phong_pipeline", "phong_unit", "harness")
     shared = [c["clock_mhz"] for c in kept if c["longest_path"].split()[0] in starts]
@@ -103,5 +111,5 @@ def test_the_spread_of_clocks():
     missing = len(CONFIGS) - len(by_name)
     said = re.search(r"(\d+) of which are not routed yet", text)
     assert (int(said[1]) if said else 0) == missing
-    own = [c["clock_mhz"] for name, c in by_name.items() if name.startswith("differences")]
+    own = [c["clock_mhz"] for name, c in by_name.items() if name.startswith("quadratic_spans")]
     assert f"their additions, {min(own):.0f} to {max(own):.0f} MHz" in text

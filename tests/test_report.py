@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from model.frame import InputError
-from model.scene import bundled_scenes
-from scripts import report
-from scripts import run as run_scene
-from sim.build import ROOT
+from phong75.model.frame import InputError
+from phong75.model.front.scene import bundled_scenes
+from phong75.scripts import run as run_scene
+from phong75.scripts.page import report
+from phong75.sim.design import PACKAGE
 
 RED, BLUE = (200, 30, 20), (20, 40, 200)
 SCENES = ("pyramid", "sphere")
@@ -143,7 +143,7 @@ def test_what_is_missing_names_its_command(tmp_path):
     html = report.page(tmp_path, tmp_path)
     for target in ("run", "results", "sweep", "tessellation", "stability", "synth"):
         command = f"make {target}"
-        assert f"{target}:" in (ROOT / "Makefile").read_text()
+        assert f"{target}:" in (PACKAGE / "Makefile").read_text()
         assert f"run <code>{command}" in html, command
 
 

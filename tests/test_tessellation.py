@@ -6,19 +6,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from model import arguments, tessellation
-from model.config import TECHNIQUES
-from model.interpolation import interpolate_at
-from model.mesh import normalize
-from model.scene_to_spans import front_end
-from model.surfaces import SURFACES
-from model.twin import render
-from scripts import records, sweep_arguments, sweep_tessellation
-from sim.build import ROOT
+from phong75.model.config import TECHNIQUES
+from phong75.model.front.interpolation import interpolate_at
+from phong75.model.front.mesh import normalize
+from phong75.model.front.scene_to_spans import front_end
+from phong75.model.studies import shading_artifacts, tessellation
+from phong75.model.studies.surfaces import SURFACES
+from phong75.model.twin import render
+from phong75.scripts import recorded
+from phong75.scripts.studies import artifact_runs, tessellation_runs
+from phong75.sim.design import PACKAGE
 
 RNG = np.random.default_rng(75)
 SIZE = (120, 90)
-README = (ROOT / "README.md").read_text()
+README = (PACKAGE / "README.md").read_text()
 
 
 # -- surfaces --------------------------------------------------------------------------------------
@@ -88,19 +89,19 @@ def rows():
     """Through the RTL; raises if a pixel differs from the model."""
     levels = {"sphere": (16, 32, 64), "torus": (16, 32, 64), "patch": (2, 4, 8)}
     return [r for shape, ks in levels.items()
-            for r in sweep_tessellation.measure(shape, ks, SIZE)]  # fmt: skip
+            for r in tessellation_runs.measure(shape, ks, SIZE)]  # fmt: skip
 
 
 def test_columns(rows):
     assert len(rows) == 3 * 4 * 3
-    assert all(tuple(row) == sweep_tessellation.COLUMNS for row in rows)
+    assert all(tuple(row) == tessellation_runs.COLUMNS for row in rows)
     for row in rows:
         assert (row["cycles"] == "") == (row["technique"] == "cubic")
 
 
 def test_orders_of_convergence(rows):
     """Flat 1, Phong 2 where no outline disturbs, Gouraud on the way to it on coarse meshes."""
-    orders = sweep_tessellation.summary(rows)["orders"]
+    orders = tessellation_runs.summary(rows)["orders"]
     for shape, by in orders.items():
         assert 0.6 < by["flat"]["facing_rms"] < 1.3, shape
         assert 1.7 < by["phong"]["facing_rms"] < 2.3, shape
@@ -109,7 +110,7 @@ def test_orders_of_convergence(rows):
 
 
 def test_phong_is_better_on_highlights(rows):
-    found = sweep_tessellation.summary(rows)
+    found = tessellation_runs.summary(rows)
     for ratios in found["times_phong"]["gouraud, highlight"].values():
         assert min(ratios) > 1.5
     near, far = found["from_phong_rms_lsb"]["cubic"], found["from_phong_rms_lsb"]["gouraud"]
@@ -133,7 +134,7 @@ def test_order_of_a_known_sequence():
 
 
 def test_mach_bands_are_weaker_with_phong():
-    found = sweep_arguments.mach({"sphere": (16,), "patch": (8,)}, SIZE)
+    found = artifact_runs.mach({"sphere": (16,), "patch": (8,)}, SIZE)
     for by in (found["sphere"][16], found["patch"][8]):
         assert by["phong"]["slope_mean"] < by["gouraud"]["slope_mean"] / 2
         assert by["flat"]["slope_max"] < 1e-9
@@ -143,34 +144,34 @@ def test_mach_bands_are_weaker_with_phong():
 def test_mach_bands_vanish_where_the_edge_is_none():
     """A flat square of two triangles: the slope jumps across the diagonal of one black corner, and
     not at all with one colour."""
-    scene = arguments.square_scene(10.0, 80)
+    scene = shading_artifacts.square_scene(10.0, 80)
     scene.materials[0] = replace(scene.materials[0], color=(0.5, 0.5, 0.5))  # nothing saturates
     counted = np.ones(80 * 80, bool)
     config = TECHNIQUES["gouraud"]
-    black = arguments.mach_bands(front_end(scene, config), "gouraud", counted)
+    black = shading_artifacts.mach_bands(front_end(scene, config), "gouraud", counted)
     # From 0 to 1/2 over the square's half diagonal, 80/2.2 dots.
     want = 255 * 0.5 * 2.2 / 80 * np.sin(np.radians(10))
     assert black["slope_mean"] == pytest.approx(want, rel=0.01)
     scene.objects[0].mesh.normals[:] = (0.0, 0.6, 0.8)
-    plain = arguments.mach_bands(front_end(scene, config), "gouraud", counted)
+    plain = shading_artifacts.mach_bands(front_end(scene, config), "gouraud", counted)
     assert plain["edges"] > 0 and plain["slope_max"] < 1e-9 > plain["intensity_max"]
 
 
 def test_turning_changes_what_is_only_the_meshs():
-    found, maps, curves = sweep_arguments.flicker({"sphere": 16}, 3, SIZE)
+    found, maps, curves = artifact_runs.flicker({"sphere": 16}, 3, SIZE)
     by = found["sphere"]
     changes = [by[t]["change_rms"] for t in ("phong", "gouraud", "flat")]
     assert changes == sorted(changes) and changes[0] < changes[1] / 1.5
     low, high = by["phong"]["peak_range"]
     assert high - low <= 1
     assert len(maps) == len(curves) == 3
-    still = list(arguments.turning("sphere", 16, "phong", 1, SIZE)) * 2
-    none = arguments.flicker(still, [render(frame) for frame in still])
+    still = list(shading_artifacts.turning("sphere", 16, "phong", 1, SIZE)) * 2
+    none = shading_artifacts.flicker(still, [render(frame) for frame in still])
     assert none["change_max"] == none["highlight_path"] == 0
 
 
 def test_orientation_matters_to_quadrilaterals_only():
-    found, pictures = sweep_arguments.orientation(60)
+    found, pictures = artifact_runs.orientation(60)
     assert found["quadrilateral"]["largest_spread_lsb"] > 100
     assert found["quadrilateral"]["middle_lsb"] == {"0": 255.0, "45": 191.25, "90": 127.5}
     assert found["triangles"]["largest_spread_lsb"] < 1e-9
@@ -182,7 +183,7 @@ def test_a_triangle_is_a_polygon():
     for _ in range(100):
         corners, shades = RNG.random((3, 2)), RNG.random(3)
         point = RNG.dirichlet(np.ones(3)) @ corners
-        by_edges = arguments.polygon_shade(corners, shades, point)
+        by_edges = shading_artifacts.polygon_shade(corners, shades, point)
         assert by_edges == pytest.approx(interpolate_at(corners, shades[:, None], point)[0])
 
 
@@ -201,7 +202,7 @@ def test_highlights_are_looked_for_where_they_are():
 
 
 def test_the_readme_shows_the_record():
-    record = records.load("tessellation")
+    record = recorded.load("tessellation")
     assert record["readme"] in README, "the README's table is old: make tessellation"
     by = {(row["shape"], row["technique"]): row["highlight_rms_lsb"] for row in record["meshes"]}
     times = [by[shape, "gouraud"] / by[shape, "phong"] for shape in SURFACES]
@@ -211,9 +212,9 @@ def test_the_readme_shows_the_record():
 
 def test_the_record_is_what_is_measured_now():
     """One mesh of the record anew, at full size and through the RTL."""
-    kept = [row for row in records.load("tessellation")["meshes"] if row["shape"] == "sphere"]
+    kept = [row for row in recorded.load("tessellation")["meshes"] if row["shape"] == "sphere"]
     for old, new in zip(
-        kept, sweep_tessellation.measure("sphere", (kept[0]["level"],)), strict=True
+        kept, tessellation_runs.measure("sphere", (kept[0]["level"],)), strict=True
     ):
         for name, value in old.items():
             same = new[name] == (value if type(value) is not float else pytest.approx(value, 1e-6))

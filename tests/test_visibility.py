@@ -8,16 +8,16 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from model import scene_to_spans, visibility
-from model.camera import Camera, light_frame, view_axes
-from model.config import DEFAULT, Config, Format
-from model.frame import InputError
-from model.interpolation import interpolate, interpolate_at, scan_line_weights
-from model.mesh import Mesh
-from model.scene import Material, Scene, SceneObject, bundled_scenes, load_scene
-from model.scene_to_spans import encode, front_end
-from model.shapes import sphere
-from model.visibility import GRID, Segments, Triangles
+from phong75.model.config import DEFAULT, Config, Format
+from phong75.model.frame import InputError
+from phong75.model.front import scene_to_spans, visibility
+from phong75.model.front.camera import Camera, light_frame, view_axes
+from phong75.model.front.interpolation import interpolate, interpolate_at, scan_line_weights
+from phong75.model.front.mesh import Mesh
+from phong75.model.front.scene import Material, Scene, SceneObject, bundled_scenes, load_scene
+from phong75.model.front.scene_to_spans import encode, front_end
+from phong75.model.front.shapes import sphere
+from phong75.model.front.visibility import GRID, Segments, Triangles
 
 WIDTH, HEIGHT = 24, 20
 SMALL = (96, 72)
@@ -517,7 +517,7 @@ def test_a_step_of_two_becomes_single_dots():
     )
     segment = Segments(*(np.array([v]) for v in (0, 1, 0, 2)))
     normals = np.array([[(0, 0, 1.0), (1.0, 0, 0), (-1.0, 0, 0)]])
-    triangles.value = normals  # at line 1: half-way down both edges
+    triangles.value = normals  # at line 1: half down both edges
     spans, start, step = scene_to_spans._spans(triangles, segment, DEFAULT, "linear")
     assert len(spans) == 1
     triangles.value = np.array([[(0, -1.0, 0), (0, -1.0, 0), (0, 3.0, 0)]])  # step exactly 2

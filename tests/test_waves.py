@@ -1,7 +1,7 @@
 import re
 
-from scripts import waves
-from sim.build import BUILD
+from phong75.scripts import waves
+from phong75.sim.design import BUILD
 
 
 def test_every_signal_of_the_save_file_is_in_the_waveform(capsys):

@@ -3,6 +3,6 @@
 `render` shades a whole frame as the hardware does, to the bit; `zero_normals` counts what it flags.
 """
 
-from .phong_pipeline import Pixels, render, zero_normals
+from phong75.model.twin.phong_pipeline import Pixels, render, zero_normals
 
 __all__ = ["Pixels", "render", "zero_normals"]

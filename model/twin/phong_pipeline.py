@@ -7,17 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..config import DEFAULT, Config
-from ..frame import Frame
-from ..spans import squares_only
-from .differences_unit import differences_unit
-from .flat_unit import flat_unit
-from .gouraud_unit import gouraud_unit
-from .normal_interpolator import normal_interpolator
-from .normalizer import normalizer, zero
-from .shading_unit import shading_unit
-from .span_walker import span_walker
-from .unnormalized import unnormalized
+from phong75.model.config import DEFAULT, Config
+from phong75.model.frame import Frame
+from phong75.model.spans import squares_only
+from phong75.model.twin.core.linear_interpolator import linear_interpolator
+from phong75.model.twin.core.normalizer import normalizer, zero
+from phong75.model.twin.core.shading_unit import shading_unit
+from phong75.model.twin.core.span_walker import span_walker
+from phong75.model.twin.methods.quadratic_unit import quadratic_unit
+from phong75.model.twin.methods.unnormalized import unnormalized
+from phong75.model.twin.techniques.flat_unit import flat_unit
+from phong75.model.twin.techniques.gouraud_unit import gouraud_unit
 
 #: Pixels worked on at a time: the temporaries of one block fit the cache.
 BLOCK = 1 << 14
@@ -36,7 +36,7 @@ class Pixels:
 def interpolate(spans, span, k, config: Config):
     """The three interpolators: normals int64[3, n], and whether a component left its word."""
     parts = [
-        normal_interpolator(spans["start"][span, axis], spans["step"][span, axis], k, config)
+        linear_interpolator(spans["start"][span, axis], spans["step"][span, axis], k, config)
         for axis in range(3)
     ]
     return np.stack([p[0] for p in parts]), parts[0][1] | parts[1][1] | parts[2][1]
@@ -59,7 +59,7 @@ def colours(frame: Frame, span, k, config: Config):
     if config.technique == "flat":
         return flat_unit(frame.spans, span, config)
     if squares_only(config):
-        return differences_unit(frame, span, k, config)
+        return quadratic_unit(frame, span, k, config)
     normal, _ = interpolate(frame.spans, span, k, config)
     return shade(normal, frame.spans["material"][span], frame, config)
 

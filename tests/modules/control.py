@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import cocotb
 
-from sim.stream_tb import REGIMES, Clocked, pauses
+from phong75.sim.module.stream_tb import REGIMES, Clocked, pauses
 
 SEED = int(os.environ.get("PHONG_SEED", "75"))
 COORDINATE_BITS, MATERIAL_BITS, COLOUR_BITS = 4, 2, 3  # of the bench

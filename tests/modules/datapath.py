@@ -11,18 +11,18 @@ import cocotb
 import numpy as np
 from cocotb.triggers import FallingEdge
 
-from model.config import DEFAULT as C
-from model.frame import SPAN_DTYPE, Frame, MaterialTable
-from model.twin.intensity_code import intensity_code
-from model.twin.inverse_sqrt import inverse_sqrt
-from model.twin.normalizer import normalizer
-from model.twin.reflection import reflection
-from model.twin.shading_unit import shading_unit
-from model.twin.specular_cosine import specular_cosine
-from model.twin.specular_power import specular_power
-from model.twin.specular_weight import specular_weight
-from sim.unit_tb import UnitTB
-from sim.units import lanes
+from phong75.model.config import DEFAULT as C
+from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable
+from phong75.model.twin.core.inverse_sqrt_linear import inverse_sqrt_linear
+from phong75.model.twin.core.normalizer import normalizer
+from phong75.model.twin.core.reflection import reflection
+from phong75.model.twin.core.shading_unit import shading_unit
+from phong75.model.twin.core.specular_cosine import specular_cosine
+from phong75.model.twin.core.specular_power_tables import specular_power_tables
+from phong75.model.twin.core.specular_weight import specular_weight
+from phong75.model.twin.techniques.intensity_code import intensity_code
+from phong75.sim.module.unit_tb import UnitTB
+from phong75.sim.module.units import lanes
 
 SEED = int(os.environ.get("PHONG_SEED", "75"))
 RANDOM = 200_000
@@ -44,25 +44,25 @@ def _edges(fmt, rng, n: int) -> np.ndarray:
     return np.clip(np.where(rng.random(n) < 1 / 3, near, codes), fmt.min, fmt.max)
 
 
-# -- inverse_sqrt ---------------------------------------------------------------------------------
+# -- inverse_sqrt_linear ---------------------------------------------------------------------------
 
 
-@_only("inverse_sqrt")
+@_only("inverse_sqrt_linear")
 async def inverse_sqrt_exhaustive(dut):
     """Every operand, those below 1 included."""
     tb = UnitTB(dut, MODULE)
     for first in range(0, 1 << C.root_operand.bits, 1 << 20):
         operand = np.arange(first, first + (1 << 20))
         trace = {}
-        inverse_sqrt(operand, C, trace)
+        inverse_sqrt_linear(operand, C, trace)
         await tb.check([operand], trace)
 
 
-@_only("inverse_sqrt")
+@_only("inverse_sqrt_linear")
 async def inverse_sqrt_latency(dut):
     """One operand at a time shows at the stated clock only."""
     await UnitTB(dut, MODULE).check_latency(
-        [C.root_operand.one], [3 * C.root_operand.one], "inverse_sqrt.round"
+        [C.root_operand.one], [3 * C.root_operand.one], "inverse_sqrt_linear.round"
     )
 
 
@@ -156,7 +156,7 @@ async def normalizer_latency(dut):
 
 @_only("reflection")
 async def reflection_random(dut):
-    """Unit and arbitrary words, the half-way vector from light to opposite, and its extremes."""
+    """Unit and arbitrary words, the half vector from light to opposite, and its extremes."""
     tb = UnitTB(dut, MODULE)
     rng = np.random.default_rng(SEED)
     halves = [C.half_vector.quantize([np.sin(a), np.cos(a)]) for a in np.linspace(0, 1.57, 7)]
@@ -183,10 +183,10 @@ async def reflection_latency(dut):
     await tb.check_latency([0, 0, C.unit.max], [C.unit.max // 2, 0, 0], "reflection.versine")
 
 
-# -- specular_power -------------------------------------------------------------------------------
+# -- specular_power_tables -------------------------------------------------------------------------
 
 
-@_only("specular_power")
+@_only("specular_power_tables")
 async def specular_power_random(dut):
     """Random operands for random exponents, and all versines near both ends."""
     tb = UnitTB(dut, MODULE)
@@ -201,18 +201,18 @@ async def specular_power_random(dut):
     n = np.where(rng.random(len(v)) < 0.5, rng.choice(special.astype(np.int64), len(v)), n)
     n = np.where(rng.random(len(v)) < 0.05, one + rng.integers(-1, 2, len(v)), n)
     trace = {}
-    specular_power(v, n, C, trace)
+    specular_power_tables(v, n, C, trace)
     await tb.check([v, n], trace, NOTE)
 
 
-@_only("specular_power")
+@_only("specular_power_tables")
 async def specular_power_latency(dut):
     """One operand at a time shows at the stated clock only, also through the bypass."""
     tb = UnitTB(dut, MODULE)
     half, one = C.versine.one // 2, C.exponent.one
-    await tb.check_latency([0, 2 * one], [half, 2 * one], "specular_power.bypass")
-    await tb.check_latency([0, one], [half, one], "specular_power.bypass")
-    await tb.check_latency([half, 2 * one], [half, one], "specular_power.bypass")
+    await tb.check_latency([0, 2 * one], [half, 2 * one], "specular_power_tables.bypass")
+    await tb.check_latency([0, one], [half, one], "specular_power_tables.bypass")
+    await tb.check_latency([half, 2 * one], [half, one], "specular_power_tables.bypass")
 
 
 @_only("specular_cosine")
@@ -236,7 +236,7 @@ async def specular_cosine_latency(dut):
 
 
 def _frame(rng) -> Frame:
-    """All materials random, some at the ends of their ranges; a half-way vector in between."""
+    """All materials random, some at the ends of their ranges; a half vector in between."""
     table = MaterialTable.empty(C)
     for m in range(C.materials):
         cp = rng.choice([0.0, 1.0], 3) if m < 4 else rng.random(3)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from model.config import DEFAULT as C
-from model.config import Config
-from model.frame import SPAN_DTYPE, Frame, MaterialTable
+from phong75.model.config import DEFAULT as C
+from phong75.model.config import Config
+from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable
 
 
 def random_frame(

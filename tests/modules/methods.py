@@ -10,16 +10,16 @@ import os
 import cocotb
 import numpy as np
 
-from model.sweep import CONFIGS
-from model.twin.difference_normalizer import difference_normalizer
-from model.twin.inverse_sqrt_iterated import inverse_sqrt_iterated
-from model.twin.inverse_sqrt_quadratic import inverse_sqrt_quadratic
-from model.twin.newton_step import newton_step
-from model.twin.power_schlick import power_schlick
-from model.twin.power_squaring import power_squaring
-from model.twin.quadratic_interpolator import quadratic_interpolator
-from model.twin.unnormalized import unnormalized
-from sim.unit_tb import UnitTB
+from phong75.model.studies.methods import CONFIGS
+from phong75.model.twin.methods.inverse_sqrt_iterated import inverse_sqrt_iterated
+from phong75.model.twin.methods.inverse_sqrt_quadratic import inverse_sqrt_quadratic
+from phong75.model.twin.methods.newton_step import newton_step
+from phong75.model.twin.methods.quadratic_interpolator import quadratic_interpolator
+from phong75.model.twin.methods.quadratic_normalizer import quadratic_normalizer
+from phong75.model.twin.methods.specular_power_schlick import specular_power_schlick
+from phong75.model.twin.methods.specular_power_squaring import specular_power_squaring
+from phong75.model.twin.methods.unnormalized import unnormalized
+from phong75.sim.module.unit_tb import UnitTB
 from tests.modules.datapath import _edges, _normals
 
 C = CONFIGS[os.environ.get("PHONG_CONFIG", "default")]
@@ -132,8 +132,8 @@ async def quadratic_interpolator_random(dut):
     await tb.check([advance, load, *at_ports], trace, NOTE, in_sequence=True)
 
 
-@_only("difference_normalizer")
-async def difference_normalizer_random(dut):
+@_only("quadratic_normalizer")
+async def quadratic_normalizer_random(dut):
     """Squares of normals of all lengths, near the highlight, too; and any words."""
     tb = UnitTB(dut, MODULE)
     rng = np.random.default_rng(SEED)
@@ -142,25 +142,25 @@ async def difference_normalizer_random(dut):
     direction[:2] *= 2.0 ** -rng.integers(0, 20, RANDOM)
     normal = direction * 2.0 ** -rng.integers(0, 24, RANDOM)
     z = C.normal.quantize(normal[2])
-    square, across = (C.squared.quantize((normal[:n] ** 2).sum(axis=0)) for n in (3, 2))
-    across -= rng.integers(0, 3, RANDOM)  # rounding takes it below 0
-    for column, fmt in ((z, C.normal), (square, C.squared), (across, C.squared)):
+    square, cross = (C.squared.quantize((normal[:n] ** 2).sum(axis=0)) for n in (3, 2))
+    cross -= rng.integers(0, 3, RANDOM)  # rounding takes it below 0
+    for column, fmt in ((z, C.normal), (square, C.squared), (cross, C.squared)):
         any_word = rng.random(RANDOM) < 0.2
         column[any_word] = _edges(fmt, rng, int(any_word.sum()))
         column[rng.random(RANDOM) < 0.02] = 0
     for two_sided in (0, 1):
         await tb.hold(two_sided=two_sided)
         trace = {}
-        difference_normalizer(z, square, across, bool(two_sided), C, trace)
-        await tb.check([z, square, across], trace, NOTE)
+        quadratic_normalizer(z, square, cross, bool(two_sided), C, trace)
+        await tb.check([z, square, cross], trace, NOTE)
 
 
-@_only("difference_normalizer")
-async def difference_normalizer_latency(dut):
+@_only("quadratic_normalizer")
+async def quadratic_normalizer_latency(dut):
     """One pixel at a time shows at the stated clock only."""
     tb = UnitTB(dut, MODULE)
     one, square = C.normal.one, C.squared.one
-    stage = "difference_normalizer.out"
+    stage = "quadratic_normalizer.out"
     await tb.check_latency([one, square, 0], [one, square, square // 4], stage)
     await tb.check_latency(
         [one // 2, square, square // 4], [one // 2, square // 2, square // 4], stage
@@ -170,8 +170,8 @@ async def difference_normalizer_latency(dut):
 # -- cos(s)^n -------------------------------------------------------------------------------------
 
 _POWERS = {
-    "power_squaring": (power_squaring, "power_squaring.last"),
-    "power_schlick": (power_schlick, "power_schlick.quotient"),
+    "specular_power_squaring": (specular_power_squaring, "specular_power_squaring.last"),
+    "specular_power_schlick": (specular_power_schlick, "specular_power_schlick.quotient"),
 }
 
 
@@ -193,7 +193,7 @@ async def power_random(dut):
     await tb.check([v, n], trace, NOTE)
 
 
-@_only("power_squaring")
+@_only("specular_power_squaring")
 async def power_halves(dut):
     """Products on and next to a half unit below 1/2, where the sign of a word would show."""
     tb = UnitTB(dut, MODULE)
@@ -203,10 +203,10 @@ async def power_halves(dut):
         v = rng.integers(0, C.versine.one, 1 << 19)
         n = rng.integers(1, 128, len(v)) * C.exponent.one
         trace = {}
-        power_squaring(v, n, C, trace)
+        specular_power_squaring(v, n, C, trace)
         near = np.zeros(len(v), bool)
         for j in range(C.exponent.integer - 2):
-            base, result = trace[f"power_squaring.stage_{j}"]
+            base, result = trace[f"specular_power_squaring.stage_{j}"]
             for product in (base * base, base * result):
                 below = (1 << (2 * C.power.bits - 1)) - product
                 near |= (below > 0) & (below <= 1 << (C.power.bits - 1))
@@ -215,7 +215,7 @@ async def power_halves(dut):
     v, n = np.concatenate(near_v), np.concatenate(near_n)
     assert len(v) > 20, f"only {len(v)} vectors are near 1/2; {NOTE}"
     trace = {}
-    power_squaring(v, n, C, trace)
+    specular_power_squaring(v, n, C, trace)
     await tb.check([v, n], trace, NOTE)
 
 

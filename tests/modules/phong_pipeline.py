@@ -10,12 +10,12 @@ import os
 import cocotb
 import numpy as np
 
-from model.config import DEFAULT, TECHNIQUES
-from model.frame import SPAN_DTYPE
-from model.registers import writes
-from model.spans import illegal_spans, pack, record_bits, span_fields
-from model.twin import render, zero_normals
-from sim.stream_tb import REGIMES, PipelineTB, pauses
+from phong75.model.config import DEFAULT, TECHNIQUES
+from phong75.model.frame import SPAN_DTYPE
+from phong75.model.registers import writes
+from phong75.model.spans import illegal_spans, pack, record_bits, span_fields
+from phong75.model.twin import render, zero_normals
+from phong75.sim.module.stream_tb import REGIMES, PipelineTB, pauses
 from tests.modules.frames import random_frame
 
 C = TECHNIQUES.get(os.environ["PHONG_MODULE"], DEFAULT)

@@ -11,9 +11,9 @@ import os
 import cocotb
 import numpy as np
 
-from model.config import DEFAULT as C
-from model.registers import FIELDS, address_bits, word_bits
-from sim.primitives import (
+from phong75.model.config import DEFAULT as C
+from phong75.model.registers import FIELDS, address_bits, word_bits
+from phong75.sim.module.primitives import (
     DEFAULTS,
     INSTANCES,
     ROM_WORDS,
@@ -170,8 +170,8 @@ async def memory(dut, name):
 
 
 @cocotb.test()
-@cocotb.parametrize(name=_of("normal_interpolator"))
-async def normal_interpolator(dut, name):
+@cocotb.parametrize(name=_of("linear_interpolator"))
+async def linear_interpolator(dut, name):
     """Random values, loaded or summed; overflow stays once a sum left the word, until a load."""
     bits = INSTANCES[name].parameters["NORMAL_BITS"]
     rng = np.random.default_rng(SEED)

@@ -1,0 +1,1 @@
+"""What is measured and derived: reference, error bounds, metrics, pruning, reports."""

@@ -1,0 +1,1 @@
+"""The front end: from scene files and meshes to spans."""

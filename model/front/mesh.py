@@ -1,0 +1,346 @@
+"""Triangle meshes: reading files, and the normal at every corner of every face.
+
+A polygonal model knows normals "only at the vertices of polygons" (Phong 1975, "Specular
+Reflection"). A vertex where surfaces meet in a sharp edge has one normal for each of them, so the
+normals here belong to the corners of faces and not to the vertices.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from phong75.model.frame import InputError
+
+#: The kinds of mesh file that are read, by the end of their name.
+MESH_SUFFIXES = (".obj", ".ply", ".stl", ".glb")
+
+#: Edges that bend more than this many degrees stay sharp where nothing else is said.
+DEFAULT_CREASE = 60.0
+
+#: A triangle is degenerate if its doubled area is no more than this part of its longest edge
+#: squared: its normal would be nothing but rounding.
+DEGENERATE_AREA = 1e-12
+
+#: Coordinates beyond this would overflow when they are multiplied.
+MAX_COORDINATE = 1e60
+
+
+@dataclass
+class Mesh:
+    """Triangles with a unit normal at every corner.
+
+    vertices: float64[V, 3], in the units of the scene. faces: int64[F, 3], indices of vertices,
+    counter-clockwise seen from outside. normals: float64[F, 3, 3], unit length, outward.
+    degenerate: number of triangles that were left out because they have no area.
+    """
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    normals: np.ndarray
+    degenerate: int = 0
+
+    def transformed(self, scale=(1.0, 1.0, 1.0), rotate=(0.0, 0.0, 0.0), translate=(0, 0, 0)):
+        """This mesh scaled, then rotated about the fixed x, y and z axes (degrees, in this
+        order), then moved: a new Mesh. Normals go by the inverse transpose; a scale that mirrors
+        also turns the triangles round, so that counter-clockwise stays outside.
+        """
+        scale = np.broadcast_to(np.asarray(scale, np.float64), 3)
+        rotation = rotation_matrix(rotate)
+        matrix = rotation * scale
+        vertices = apply_matrix(matrix, self.vertices) + np.asarray(translate, np.float64)
+        normals = normalize(apply_matrix(rotation / scale, self.normals))
+        faces = self.faces
+        if np.prod(scale) < 0:
+            faces, normals = faces[:, ::-1], normals[:, ::-1]
+        return Mesh(vertices, faces, normals, self.degenerate)
+
+    def with_crease(self, crease: float) -> Mesh:
+        """This mesh with new normals from its faces (see `corner_normals`)."""
+        normals = corner_normals(self.vertices, self.faces, crease)
+        return Mesh(self.vertices, self.faces, normals, self.degenerate)
+
+
+def normalize(vectors: np.ndarray) -> np.ndarray:
+    """`vectors` (float64[..., 3]) at unit length; the zero vector stays zero."""
+    # The largest component comes first to 1, so that squares cannot overflow or vanish.
+    largest = np.max(np.abs(vectors), axis=-1, keepdims=True)
+    vectors = vectors / np.where(largest > 0, largest, 1.0)
+    length = np.sqrt(np.sum(vectors * vectors, axis=-1, keepdims=True))
+    return vectors / np.where(length > 0, length, 1.0)
+
+
+def apply_matrix(matrix: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    """`matrix` (float64[3, 3]) times each of `vectors` (float64[..., 3]).
+
+    Written out by component: a BLAS product may round equal vectors differently by their place in
+    the array, and two copies of a vertex must stay equal, or cracks open between triangles.
+    """
+    x, y, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
+    return np.stack([row[0] * x + row[1] * y + row[2] * z for row in matrix], axis=-1)
+
+
+def rotation_matrix(degrees) -> np.ndarray:
+    """float64[3, 3]: the rotation about x, then y, then z (fixed axes) by `degrees` (3 reals)."""
+    (cx, cy, cz), (sx, sy, sz) = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    about_x = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
+    about_y = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
+    about_z = np.array([[cz, -sz, 0], [sz, cz, 0], [0, 0, 1]])
+    return about_z @ about_y @ about_x
+
+
+def face_normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """float64[F, 3]: unit normals of the triangles; zero for degenerate ones."""
+    a, b, c = (vertices[faces[:, i]] for i in range(3))
+    longest = np.max(np.abs(np.stack([b - a, c - b, a - c])), axis=(0, 2))[:, None]
+    longest = np.where(longest > 0, longest, 1.0)
+    cross = np.cross((b - a) / longest, (c - a) / longest)
+    area = np.sqrt(np.sum(cross * cross, axis=1, keepdims=True))
+    return np.where(area > DEGENERATE_AREA, normalize(cross), 0.0)
+
+
+def corner_normals(vertices: np.ndarray, faces: np.ndarray, crease: float) -> np.ndarray:
+    """float64[F, 3, 3]: a unit normal for each corner of each face, from the faces alone.
+
+    The normal at a corner is the mean of the normals of the faces round its vertex that hang
+    together there across edges bent by no more than `crease` degrees (Starkey, "Shading
+    Techniques", section 3: average only what should appear smoothly connected). So `crease` = 0
+    gives flat faces (but for flat neighbours, where it makes no difference), 180 smooths all. Faces
+    count by their angle at the vertex (Thuermer and Wuethrich 1998), so that the mean does not
+    depend on how polygons were cut into triangles. Vertices at the same place are one vertex.
+    """
+    flat = face_normals(vertices, faces)
+    welded = places(vertices)[faces]
+    group = _smooth_groups(welded, flat, np.cos(np.radians(crease)))
+    weight = _corner_angles(vertices, faces)
+    total = np.empty((group.size, 3))
+    for axis in range(3):
+        share = (weight * flat[:, None, axis]).reshape(-1)
+        total[:, axis] = np.bincount(group, weights=share, minlength=group.size)
+    mean = normalize(total[group]).reshape(-1, 3, 3)
+    # Opposite faces can cancel out; what is left of them is the face's own normal.
+    cancelled = np.sum(total[group] ** 2, axis=1).reshape(-1, 3) < 1e-20
+    return np.where(cancelled[..., None], flat[:, None, :], mean)
+
+
+def places(vertices: np.ndarray) -> np.ndarray:
+    """int64[V]: a number for each of `vertices` (float64[V, 3]), equal where they coincide."""
+    order = np.lexsort(vertices.T)
+    moved = np.any(np.diff(vertices[order], axis=0) != 0, axis=1)
+    place = np.empty(len(vertices), np.int64)
+    place[order] = np.concatenate([[0], np.cumsum(moved)])
+    return place
+
+
+def _corner_angles(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """float64[F, 3]: the angle of each face at each of its corners, radians."""
+    corners = vertices[faces]
+    ahead = normalize(np.roll(corners, -1, axis=1) - corners)
+    behind = normalize(np.roll(corners, 1, axis=1) - corners)
+    return np.arccos(np.clip(np.sum(ahead * behind, axis=-1), -1.0, 1.0))
+
+
+def _smooth_groups(welded: np.ndarray, flat: np.ndarray, min_cosine: float) -> np.ndarray:
+    """int64[3 F]: a label for each corner, equal where corners share a normal.
+
+    Corners at a vertex are linked across each edge there that is not a crease; the groups are the
+    connected components of these links.
+    """
+    count = len(welded)
+    start, end = welded, np.roll(welded, -1, axis=1)  # edge k of a face: from corner k to k + 1
+    corner = np.arange(3 * count).reshape(count, 3)
+    low = np.minimum(start, end).reshape(-1)
+    high = np.maximum(start, end).reshape(-1)
+    swapped = (start > end).reshape(-1)
+    next_corner = np.roll(corner, -1, axis=1).reshape(-1)
+    at_low = np.where(swapped, next_corner, corner.reshape(-1))
+    at_high = np.where(swapped, corner.reshape(-1), next_corner)
+
+    order = np.lexsort((high, low))
+    first, second = order[:-1], order[1:]
+    same_edge = (low[first] == low[second]) & (high[first] == high[second])
+    first, second = first[same_edge], second[same_edge]
+    cosine = np.sum(flat[first // 3] * flat[second // 3], axis=1)
+    smooth = cosine >= min_cosine - 1e-12
+    first, second = first[smooth], second[smooth]
+    a = np.concatenate([at_low[first], at_high[first]])
+    b = np.concatenate([at_low[second], at_high[second]])
+
+    label = np.arange(3 * count)
+    while True:  # each turn takes the smallest label over a link, then over the labels found
+        least = np.minimum(label[a], label[b])
+        changed = label.copy()
+        np.minimum.at(changed, label[a], least)
+        np.minimum.at(changed, label[b], least)
+        while np.any(changed[changed] != changed):
+            changed = changed[changed]
+        if np.array_equal(changed, label):
+            return label
+        label = changed
+
+
+def make_mesh(where: str, vertices, faces, normals=None, crease: float | None = None) -> Mesh:
+    """Check raw arrays and make a Mesh of them.
+
+    where: what to call the mesh in messages. vertices: [V, 3]; faces: [F, 3]; normals: None, or
+    [F, 3, 3] of any length. `crease` in degrees asks for new normals; without it given normals are
+    kept, and missing ones are made with `DEFAULT_CREASE`. Degenerate triangles are dropped and
+    counted. Raises InputError.
+    """
+    vertices = np.asarray(vertices, np.float64).reshape(-1, 3)
+    faces = np.asarray(faces, np.int64).reshape(-1, 3)
+    if len(faces) == 0:
+        raise InputError(f"{where}: the mesh has no faces")
+    outside = (faces < 0) | (faces >= len(vertices))
+    if outside.any():
+        face, corner = np.argwhere(outside)[0]
+        raise InputError(
+            f"{where}: face {face} refers to vertex {faces[face, corner]}, "
+            f"but there are {len(vertices)} vertices"
+        )
+    bad = ~np.isfinite(vertices).all(axis=1)
+    if bad.any():
+        index = int(np.argmax(bad))
+        text = ", ".join(f"{v:g}" for v in vertices[index])
+        raise InputError(f"{where}: vertex {index} = ({text}) is not finite")
+    if np.max(np.abs(vertices)) > MAX_COORDINATE:
+        raise InputError(f"{where}: vertex coordinates exceed {MAX_COORDINATE:g}")
+
+    flat = face_normals(vertices, faces)
+    good = np.any(flat != 0, axis=1)
+    if not good.any():
+        raise InputError(f"{where}: all {len(faces)} triangles are degenerate (no area)")
+    faces, flat = faces[good], flat[good]
+    if normals is not None:
+        normals = np.asarray(normals, np.float64)[good]
+    if normals is None or crease is not None:
+        normals = corner_normals(vertices, faces, DEFAULT_CREASE if crease is None else crease)
+    else:
+        usable = np.isfinite(normals).all(axis=-1) & np.any(normals != 0, axis=-1)
+        normals = normalize(np.where(usable[..., None], normals, flat[:, None, :]))
+    return Mesh(vertices, faces, normals, int(np.count_nonzero(~good)))
+
+
+def load_mesh(path, crease: float | None = None) -> Mesh:
+    """Read an OBJ, PLY, STL or GLB file through trimesh; all its parts become one Mesh.
+
+    Normals of the file are kept unless `crease` (degrees) is given; files without them, and STL,
+    which has only those of faces, get the mean over the surrounding faces. A file whose faces
+    wind clockwise (by its own normals, or by the negative volume of a closed mesh) is turned
+    round. Raises InputError naming the file.
+    """
+    path = Path(path)
+    if path.suffix.lower() not in MESH_SUFFIXES:
+        raise InputError(f"{path}: not a mesh file ({', '.join(MESH_SUFFIXES)})")
+    if not path.is_file():
+        raise InputError(f"{path}: no such file")
+    vertices, faces, normals = _read_parts(path)
+    given = crease is None and normals is not None
+    mesh = make_mesh(str(path), vertices, faces, normals, crease)
+    flat = face_normals(mesh.vertices, mesh.faces)
+    if given:
+        agreement = np.sum(flat[:, None, :] * mesh.normals)
+        if agreement < 0:
+            mesh = Mesh(mesh.vertices, mesh.faces[:, ::-1], mesh.normals[:, ::-1], mesh.degenerate)
+    elif is_closed(mesh) and _volume(mesh) < 0:
+        mesh = Mesh(mesh.vertices, mesh.faces[:, ::-1], -mesh.normals[:, ::-1], mesh.degenerate)
+    return mesh
+
+
+def is_closed(mesh: Mesh) -> bool:
+    """Whether every edge of `mesh` is run through once in each direction: a closed surface that
+    winds one way everywhere, so that no back face can be seen from outside."""
+    return _directed_edges(mesh)[1]
+
+
+def is_consistent(mesh: Mesh) -> bool:
+    """Whether no edge of `mesh` is run through twice in the same direction."""
+    return _directed_edges(mesh)[0]
+
+
+def _directed_edges(mesh: Mesh) -> tuple[bool, bool]:
+    welded = places(mesh.vertices)[mesh.faces]
+    start, end = welded.reshape(-1), np.roll(welded, -1, axis=1).reshape(-1)
+    size = int(welded.max()) + 1
+    forward = np.sort(start * size + end)
+    consistent = bool(np.all(np.diff(forward) != 0))
+    return consistent, consistent and np.array_equal(forward, np.sort(end * size + start))
+
+
+def _volume(mesh: Mesh) -> float:
+    centre = np.mean(mesh.vertices, axis=0)
+    a, b, c = (mesh.vertices[mesh.faces[:, i]] - centre for i in range(3))
+    return float(np.sum(a * np.cross(b, c)) / 6.0)
+
+
+def _read_parts(path: Path):
+    """Vertices [V, 3], faces [F, 3] and corner normals [F, 3, 3] (or None) of all parts of a
+    file, each moved to its place. Raises InputError."""
+    import trimesh  # takes a third of a second, which scenes of shapes need not spend
+
+    try:
+        if path.suffix.lower() == ".obj":
+            _check_obj_indices(path)
+        scene = trimesh.load_scene(
+            str(path), process=False, maintain_order=True, skip_materials=True
+        )
+    except InputError:
+        raise
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except IndexError as error:
+        raise InputError(f"{path}: index out of range, or cut short: {_line(error)}") from None
+    except Exception as error:  # readers of trimesh raise whatever their libraries do
+        raise InputError(f"{path}: not a readable mesh: {_line(error)}") from None
+
+    all_vertices, all_faces, all_normals, offset = [], [], [], 0
+    for node in sorted(scene.graph.nodes_geometry):
+        matrix, name = scene.graph.get(node)
+        part = scene.geometry[name]
+        if not isinstance(part, trimesh.Trimesh):
+            continue  # points or lines
+        vertices, faces = np.asarray(part.vertices), np.asarray(part.faces)
+        linear, shift = matrix[:3, :3], matrix[:3, 3]
+        in_range = len(faces) and faces.min() >= 0 and faces.max() < len(vertices)
+        if not in_range:
+            return vertices, faces, None  # for `make_mesh` to say what is wrong
+        # trimesh makes normals up where the file has none; only those of the file are wanted.
+        given = "vertex_normals" in part._cache
+        normals = np.asarray(part.vertex_normals)[faces] if given else None
+        if not np.array_equal(matrix, np.eye(4)):
+            vertices = apply_matrix(linear, vertices) + shift
+            if normals is not None:
+                normals = normalize(apply_matrix(np.linalg.inv(linear).T, normals))
+            if np.linalg.det(linear) < 0:
+                faces = faces[:, ::-1]
+                normals = None if normals is None else normals[:, ::-1]
+        all_vertices.append(vertices)
+        all_faces.append(faces + offset)
+        all_normals.append(normals)
+        offset += len(vertices)
+    if not all_faces:
+        raise InputError(f"{path}: the mesh has no faces")
+    vertices, faces = np.concatenate(all_vertices), np.concatenate(all_faces)
+    if all(n is None for n in all_normals):
+        return vertices, faces, None
+    if any(n is None for n in all_normals):  # some parts have normals: make those of the others
+        made = corner_normals(vertices, faces, DEFAULT_CREASE)
+        pieces = np.split(made, np.cumsum([len(f) for f in all_faces])[:-1])
+        all_normals = [m if n is None else n for m, n in zip(pieces, all_normals, strict=True)]
+    return vertices, faces, np.concatenate(all_normals)
+
+
+def _check_obj_indices(path: Path) -> None:
+    """OBJ counts from 1 (and from -1 backwards); trimesh would take 0 for the last vertex."""
+    zero = re.search(rb"^f[ \t](?:[^\n]*[ \t])?[-+]?0+(?![\d.])[^\n]*", path.read_bytes(), re.M)
+    if zero:
+        text = zero.group().decode(errors="replace").strip()
+        raise InputError(f"{path}: index out of range: '{text}' (the first vertex of OBJ is 1)")
+
+
+def _line(error: Exception) -> str:
+    """The message of `error` on one line."""
+    return " ".join(str(error).split()) or type(error).__name__

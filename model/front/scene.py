@@ -1,0 +1,528 @@
+"""Scenes: TOML files, bundled ones by name, and bare mesh files, checked from end to end.
+
+Every mistake in a file becomes an `InputError` of one line that names the file, the key and the
+value. `scenes/*.toml` are examples. All keys, of which only `shape` or `mesh` must be there:
+
+    size = [640, 480]               # pixels
+    background = [0.0, 0.0, 0.0]    # red, green, blue, 0 to 1
+    two_sided = false               # light both sides of surfaces, cull no back faces
+    interpolation = "linear"        # as in the paper; or "normalized_edges"
+
+    [light]
+    direction = [-0.5, 0.6, 1.0]    # towards the light, any length
+    relative_to = "camera"          # x right, y up, z to the eye; or "scene" (default)
+
+    [camera]                        # what is left out is chosen to show all objects
+    projection = "orthographic"     # or "perspective"
+    direction = [0.35, -1.0, 0.45]  # from the target towards the eye; or
+    eye = [1, -3, 2]                #   a point
+    target = [0, 0, 0]              # the point in the middle of the picture
+    up = [0, 0, 1]
+    height = 4.0                    # orthographic: scene units from top to bottom
+    fov = 30                        # perspective: degrees from top to bottom
+    near = 0.01                     # perspective: distance of the near plane
+
+    [materials.NAME]                # eq. (3) of the paper; up to 16
+    color = [0.7, 0.6, 0.5]         # Cp
+    d = 0.15                        # environmental diffuse reflection
+    n = 10                          # 1 to 128, whole or not
+    W = 0.4                         # or values at equally spaced Zn = cos(i) from 0 to 1, or
+    W = { degrees = [0, 60, 90], values = [0.2, 0.3, 0.8] }  # at incident angles i
+
+    [[objects]]
+    shape = "teapot"                # sphere, torus, cone, pyramid; their parameters (`shapes`)
+    divisions = 10                  #   are keys; or
+    mesh = "bunny.obj"              # a file, relative to this one
+    crease = 60                     # edges that bend more (degrees) are sharp; makes new normals
+    scale = 1.0                     # or [x, y, z]; first scaled, then
+    rotate = [0, 0, 0]              # turned about x, y, z (degrees), then
+    translate = [0, 0, 0]           # moved
+    material = "NAME"               # or { color = ..., n = ... }
+    name = "my teapot"
+
+W is piecewise linear in Zn between the points given, and constant beyond them.
+"""
+
+from __future__ import annotations
+
+import difflib
+import inspect
+import math
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from phong75.model.config import DEFAULT, Config
+from phong75.model.frame import InputError
+from phong75.model.front import shapes
+from phong75.model.front.camera import (
+    DEFAULT_DIRECTION,
+    DEFAULT_FOV,
+    DEFAULT_LIGHT,
+    DEFAULT_UP,
+    NEAR,
+    Camera,
+    fit_orthographic,
+    fit_perspective,
+    view_axes,
+)
+from phong75.model.front.mesh import MESH_SUFFIXES, Mesh, is_consistent, load_mesh
+
+SCENES = Path(__file__).parent.parent / "scenes"
+DEFAULT_SIZE = (640, 480)
+DEFAULT_BACKGROUND = (0.05, 0.06, 0.08)
+INTERPOLATIONS = ("linear", "normalized_edges")
+
+SHAPES = {
+    "sphere": shapes.sphere,
+    "torus": shapes.torus,
+    "cone": shapes.cone,
+    "pyramid": shapes.pyramid,
+    "teapot": shapes.teapot,
+}
+
+#: Largest tessellation parameters: more would only fill the memory, the triangles being far
+#: below the size of a dot.
+MAX_TESSELLATION = {"divisions": 128, "segments": 1024, "sides": 1024, "rings": 1024}
+
+
+@dataclass(frozen=True)
+class Material:
+    """Phong's eq. (3) for one material.
+
+    color: Cp of red, green and blue; d: environmental diffuse reflection coefficient; all in
+    [0, 1]. n: the power, 1 to 128. weight_zn, weight_values: W(i) at increasing Zn = cos(i) within
+    [0, 1], piecewise linear in Zn between and constant beyond.
+    """
+
+    color: tuple[float, float, float] = (0.65, 0.62, 0.58)
+    d: float = 0.15
+    n: float = 10.0
+    weight_zn: tuple[float, ...] = (0.0, 1.0)
+    weight_values: tuple[float, ...] = (0.4, 0.4)
+
+    def weight(self, zn) -> np.ndarray:
+        """W at `zn` (any shape), float64."""
+        return np.interp(zn, self.weight_zn, self.weight_values)
+
+
+@dataclass
+class SceneObject:
+    """A mesh in its place in the scene, and the index of its material."""
+
+    name: str
+    mesh: Mesh
+    material: int
+
+
+@dataclass
+class Scene:
+    """A picture to make. background: 3 reals in [0, 1]. light: unit vector towards the light,
+    scene axes. two_sided: light both sides of surfaces and cull none. interpolation: "linear"
+    (the paper's) or "normalized_edges"."""
+
+    name: str
+    width: int
+    height: int
+    background: tuple[float, float, float]
+    camera: Camera
+    light: np.ndarray
+    two_sided: bool
+    interpolation: str
+    objects: list[SceneObject]
+    materials: list[Material] = field(default_factory=lambda: [Material()])
+
+
+def bundled_scenes() -> list[str]:
+    """The names of the scenes that come with the project."""
+    return sorted(p.stem for p in SCENES.glob("*.toml"))
+
+
+def load_scene(
+    name_or_path, size: tuple[int, int] | None = None, config: Config = DEFAULT
+) -> Scene:
+    """Load a bundled scene by name, a scene file (.toml), or a mesh file, framed and lit.
+
+    size: (width, height) in pixels in place of the scene's own. Raises InputError.
+    """
+    name = str(name_or_path)
+    if name in bundled_scenes():
+        path = SCENES / f"{name}.toml"
+    else:
+        path = Path(name)
+        if not path.is_file():
+            if path.exists():
+                raise InputError(f"{name}: not a file")
+            close = difflib.get_close_matches(name, bundled_scenes(), 1)
+            hint = f"; did you mean {close[0]}?" if close else ""
+            raise InputError(
+                f"{name}: no such file, nor a bundled scene ({', '.join(bundled_scenes())}){hint}"
+            )
+    suffix = path.suffix.lower()
+    if suffix == ".toml":
+        return _scene(_Table(_read_toml(path), str(path)), path, size, config)
+    if suffix in MESH_SUFFIXES:
+        return _mesh_scene(path, size, config)
+    raise InputError(f"{name}: neither a scene (.toml) nor a mesh ({', '.join(MESH_SUFFIXES)})")
+
+
+def _mesh_scene(path: Path, size, config: Config) -> Scene:
+    """A scene of nothing but a mesh file."""
+    mesh = load_mesh(path)
+    # Printers' files have z up; the others, y.
+    table = {} if path.suffix.lower() == ".stl" else {"up": [0.0, 1.0, 0.0]}
+    if "up" in table:
+        table["direction"] = [0.35, 0.35, 1.0]
+    root = _Table({"camera": table}, str(path))
+    width, height = _size(root, size, config)
+    camera = _camera(root.table("camera"), mesh.vertices, width / height)
+    return Scene(
+        path.stem,
+        width,
+        height,
+        DEFAULT_BACKGROUND,
+        camera,
+        _light(root.table("light"), camera),
+        # Faces that wind both ways hide at random if they are culled by their winding.
+        not is_consistent(mesh),
+        "linear",
+        [SceneObject(path.stem, mesh, 0)],
+    )
+
+
+def _scene(root: _Table, path: Path, size, config: Config) -> Scene:
+    width, height = _size(root, size, config)
+    background = root.reals("background", 3, DEFAULT_BACKGROUND, 0.0, 1.0)
+    two_sided = root.boolean("two_sided", False)
+    interpolation = root.choice("interpolation", INTERPOLATIONS, "linear")
+    materials, indices = [], {}
+    for name, table in root.tables_by_name("materials"):
+        indices[name] = len(materials)
+        materials.append(_material(table))
+    objects = []
+    for number, table in enumerate(root.list_of_tables("objects")):
+        objects.append(_object(table, number, path, materials, indices))
+    if not objects:
+        raise root.error("objects", "missing: a scene needs at least one [[objects]] table")
+    if len(materials) > config.materials:
+        raise root.error(
+            "materials", f"{len(materials)} materials, but the table has {config.materials} entries"
+        )
+    points = np.concatenate([o.mesh.vertices for o in objects])
+    camera = _camera(root.table("camera"), points, width / height)
+    light = _light(root.table("light"), camera)
+    root.finish()
+    return Scene(
+        path.stem,
+        width,
+        height,
+        background,
+        camera,
+        light,
+        two_sided,
+        interpolation,
+        objects,
+        materials,
+    )
+
+
+def _read_toml(path: Path) -> dict:
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: not UTF-8 text (byte {error.start})") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        message = str(error).replace(
+            "at end of document", f"at line {text.count(chr(10)) + 1}, end of file"
+        )
+        raise InputError(f"{path}: malformed TOML: {message}") from None
+
+
+def _size(root: _Table, size, config: Config) -> tuple[int, int]:
+    own = root.value("size", None)
+    for where, value in ((root.where("size"), own), ("size", size)):
+        if value is None:
+            continue
+        whole = isinstance(value, (list, tuple)) and all(type(v) is int for v in value)
+        if not (whole and len(value) == 2):
+            raise InputError(f"{where} = {_show(value)} is not [width, height] in pixels")
+        if not all(1 <= v <= config.max_size for v in value):
+            raise InputError(
+                f"{where} = {value[0]}x{value[1]} is outside 1 to {config.max_size} pixels"
+            )
+    return tuple(size or own or DEFAULT_SIZE)
+
+
+def _material(table: _Table) -> Material:
+    default = Material()
+    zn, values = _weight(table)
+    material = Material(
+        table.reals("color", 3, default.color, 0.0, 1.0),
+        table.real("d", default.d, 0.0, 1.0),
+        table.real("n", default.n, 1.0, 128.0),
+        zn or default.weight_zn,
+        values or default.weight_values,
+    )
+    table.finish()
+    return material
+
+
+def _weight(table: _Table) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """W as increasing Zn and values; both empty if the table does not give it."""
+    value = table.value("W", None)
+    if value is None:
+        return (), ()
+    if isinstance(value, dict):
+        inner = table.child("W", value)
+        degrees = inner.list_of_reals("degrees", 0.0, 90.0)
+        values = inner.list_of_reals("values", 0.0, 1.0)
+        inner.finish()
+        if len(degrees) != len(values):
+            raise table.error("W", f"{len(degrees)} degrees, but {len(values)} values")
+        if np.any(np.diff(degrees) <= 0):
+            raise inner.error("degrees", f"= {_show(degrees)} do not increase")
+        # cos(90 degrees) is not quite 0 in floating point.
+        zn = [0.0 if i == 90.0 else math.cos(math.radians(i)) for i in degrees]
+        return tuple(zn[::-1]), tuple(values[::-1])
+    if isinstance(value, list):
+        values = table.list_of_reals("W", 0.0, 1.0)
+        if len(values) < 2:
+            raise table.error("W", f"= {_show(value)} needs at least two points, at Zn = 0 and 1")
+        return tuple(np.linspace(0.0, 1.0, len(values))), tuple(values)
+    constant = table.real("W", 0.0, 0.0, 1.0)
+    return (0.0, 1.0), (constant, constant)
+
+
+def _object(table: _Table, number: int, path: Path, materials, indices) -> SceneObject:
+    shape = table.choice("shape", tuple(SHAPES), None)
+    file = table.text("mesh", None)
+    label = table.text("name", shape or file or f"object {number}")
+    if (shape is None) == (file is None):
+        raise table.error("", "needs either shape = ... or mesh = ... (a file)")
+    crease = table.real("crease", None, 0.0, 180.0)
+    if shape:
+        mesh = _shape(table, shape)
+        if crease is not None:
+            mesh = mesh.with_crease(crease)
+    else:
+        try:
+            mesh = load_mesh(path.parent / file, crease)
+        except InputError as error:
+            raise InputError(f"{table.where('mesh')}: {error}") from None
+    scale = table.value("scale", 1.0)
+    scale = table.reals("scale", 3) if isinstance(scale, list) else (table.real("scale", 1.0),) * 3
+    if 0.0 in scale:
+        raise table.error("scale", "= 0 would flatten the object")
+    mesh = mesh.transformed(
+        scale,
+        table.reals("rotate", 3, (0.0, 0.0, 0.0)),
+        table.reals("translate", 3, (0.0, 0.0, 0.0)),
+    )
+    wanted = table.value("material", None)
+    if isinstance(wanted, dict):
+        materials.append(_material(table.child("material", wanted)))
+        index = len(materials) - 1
+    elif wanted is None:
+        index = indices.setdefault(None, len(materials))
+        if index == len(materials):
+            materials.append(Material())
+    else:
+        name = table.text("material", None)
+        if name not in indices:
+            known = ", ".join(k for k in indices if k) or "none"
+            raise table.error("material", f"= {_show(name)} is not in [materials] (there: {known})")
+        index = indices[name]
+    table.finish()
+    return SceneObject(label, mesh, index)
+
+
+def _shape(table: _Table, shape: str) -> Mesh:
+    """Make a shape; its keys in the file are the parameters of its function."""
+    arguments = {}
+    for name, parameter in inspect.signature(SHAPES[shape]).parameters.items():
+        if isinstance(parameter.default, int):
+            least = 1 if name in ("rings", "divisions") else 3
+            least = 2 if (shape, name) == ("sphere", "rings") else least
+            most = MAX_TESSELLATION[name]
+            arguments[name] = table.whole(name, parameter.default, least, most)
+        else:
+            arguments[name] = table.real(name, parameter.default)
+            if not arguments[name] > 0:
+                raise table.error(name, f"= {arguments[name]:g} is not greater than 0")
+    return SHAPES[shape](**arguments)
+
+
+def _camera(table: _Table, points: np.ndarray, aspect: float) -> Camera:
+    """The camera of a table; what it leaves open is chosen so that `points` fill the picture."""
+    projection = table.choice("projection", ("orthographic", "perspective"), "orthographic")
+    perspective = projection == "perspective"
+    eye, direction = table.reals("eye", 3, None), table.reals("direction", 3, None)
+    target, up = table.reals("target", 3, None), table.reals("up", 3, None)
+    height, fov = table.real("height", None), table.real("fov", None)
+    near = table.real("near", None)
+    if eye is not None and direction is not None:
+        raise table.error("direction", "and eye cannot both be given")
+    if height is not None and perspective:
+        raise table.error("height", "is for orthographic cameras; perspective ones have fov")
+    for key, value in (("fov", fov), ("near", near)):
+        if value is not None and not perspective:
+            raise table.error(key, "is for perspective cameras; orthographic ones have height")
+    for key, value in (("height", height), ("near", near)):
+        if value is not None and value <= 0:
+            raise table.error(key, f"= {value:g} is not greater than 0")
+    if fov is not None and not 1.0 <= fov <= 170.0:
+        raise table.error("fov", f"= {fov:g} is outside [1, 170] degrees")
+    if up is not None and not any(up):
+        raise table.error("up", "= [0, 0, 0] has no direction")
+    table.finish()
+
+    if eye is not None:
+        middle = (points.min(axis=0) + points.max(axis=0)) / 2.0
+        target = middle if target is None else np.asarray(target)
+        back, key = np.asarray(eye) - target, "eye"
+    else:
+        back, key = np.asarray(direction or DEFAULT_DIRECTION), "direction"
+    if not np.any(back):
+        zero = "= target: the line of sight has" if key == "eye" else "= [0, 0, 0] has"
+        raise table.error(key, f"{zero} no direction")
+    axes = view_axes(back, up or DEFAULT_UP)
+    if axes is None:
+        if up is not None:
+            raise table.error("up", f"= {_show(up)} is parallel to the line of sight")
+        axes = view_axes(back, (0.0, 1.0, 0.0))  # from straight above, with the default up
+
+    if perspective:
+        fov = fov or DEFAULT_FOV
+        if eye is None:
+            target, distance = fit_perspective(points, axes, target, aspect, fov)
+            eye = target + distance * axes[2]
+        eye = np.asarray(eye, float)
+        near = near or NEAR * float(np.linalg.norm(eye - target))
+        return Camera(projection, axes, target, eye, fov=fov, near=near)
+    target, fitting = fit_orthographic(points, axes, target, aspect)
+    return Camera(projection, axes, target, target + axes[2], height=height or fitting)
+
+
+def _light(table: _Table, camera: Camera) -> np.ndarray:
+    """Unit vector towards the light, in the scene's axes."""
+    direction = table.reals("direction", 3, None)
+    relative_to = table.choice("relative_to", ("scene", "camera"), "scene")
+    table.finish()
+    if direction is None:
+        direction, relative_to = DEFAULT_LIGHT, "camera"
+    direction = np.asarray(direction)
+    if not np.any(direction):
+        raise table.error("direction", "= [0, 0, 0] has no direction")
+    direction = direction / np.max(np.abs(direction))
+    if relative_to == "camera":
+        direction = direction @ camera.axes
+    return direction / np.linalg.norm(direction)
+
+
+def _show(value) -> str:
+    """`value` on one line, cut if it is long."""
+    text = " ".join(repr(list(value) if isinstance(value, tuple) else value).split())
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+class _Table:
+    """A table of a scene file that hands out checked values, and knows which keys nobody asked
+    for."""
+
+    def __init__(self, values: dict, file: str, prefix: str = ""):
+        self.values, self.file, self.prefix = values, file, prefix
+        self.known: set[str] = set()
+
+    def where(self, key: str) -> str:
+        """File and full name of `key`."""
+        return f"{self.file}: {self.prefix}{key}".removesuffix(".")
+
+    def error(self, key: str, what: str) -> InputError:
+        return InputError(f"{self.where(key)} {what}".replace(" : ", ": "))
+
+    def value(self, key: str, default):
+        self.known.add(key)
+        return self.values.get(key, default)
+
+    def child(self, key: str, values) -> _Table:
+        if not isinstance(values, dict):
+            raise self.error(key, f"= {_show(values)} is not a table")
+        return _Table(values, self.file, f"{self.prefix}{key}.")
+
+    def table(self, key: str) -> _Table:
+        return self.child(key, self.value(key, {}))
+
+    def tables_by_name(self, key: str) -> list[tuple[str, _Table]]:
+        outer = self.table(key)
+        return [(name, outer.child(name, value)) for name, value in outer.values.items()]
+
+    def list_of_tables(self, key: str) -> list[_Table]:
+        value = self.value(key, [])
+        if not isinstance(value, list):
+            raise self.error(key, "is not a list of tables: write [[objects]]")
+        return [self.child(f"{key}[{i}]", v) for i, v in enumerate(value)]
+
+    def _number(self, key: str, value, low: float, high: float) -> float:
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise self.error(key, f"= {_show(value)} is not a number")
+        if not math.isfinite(value):
+            raise self.error(key, f"= {value} is not finite")
+        if not low <= value <= high:
+            raise self.error(key, f"= {value:g} is outside [{low:g}, {high:g}]")
+        return float(value)
+
+    def real(self, key: str, default, low: float = -1e30, high: float = 1e30):
+        value = self.value(key, None)
+        return default if value is None else self._number(key, value, low, high)
+
+    def whole(self, key: str, default: int, low: int, high: int) -> int:
+        value = self.value(key, default)
+        if type(value) is not int:
+            raise self.error(key, f"= {_show(value)} is not a whole number")
+        return int(self._number(key, value, low, high))
+
+    def list_of_reals(self, key: str, low: float = -1e30, high: float = 1e30) -> list[float]:
+        value = self.value(key, None)
+        if not isinstance(value, list) or not value:
+            raise self.error(key, f"= {_show(value)} is not a list of numbers")
+        return [self._number(f"{key}[{i}]", v, low, high) for i, v in enumerate(value)]
+
+    def reals(self, key: str, count: int, default=None, low: float = -1e30, high: float = 1e30):
+        if self.value(key, None) is None:
+            return default
+        values = self.list_of_reals(key, low, high)
+        if len(values) != count:
+            raise self.error(key, f"= {_show(values)} does not have {count} numbers")
+        return tuple(values)
+
+    def boolean(self, key: str, default: bool) -> bool:
+        value = self.value(key, default)
+        if not isinstance(value, bool):
+            raise self.error(key, f"= {_show(value)} is not true or false")
+        return value
+
+    def text(self, key: str, default):
+        value = self.value(key, default)
+        if value is not None and not isinstance(value, str):
+            raise self.error(key, f"= {_show(value)} is not a string")
+        return value
+
+    def choice(self, key: str, choices: tuple[str, ...], default):
+        value = self.text(key, default)
+        if value is not None and value != default and value not in choices:
+            raise self.error(key, f"= {_show(value)} is not one of {', '.join(choices)}")
+        return value
+
+    def finish(self) -> None:
+        """Raise InputError for the first key that nobody asked for."""
+        for key in self.values:
+            if key not in self.known:
+                close = difflib.get_close_matches(key, sorted(self.known), 1)
+                hint = f"; did you mean {close[0]}?" if close else ""
+                raise InputError(f"{self.where(key)}: unknown key{hint}")

@@ -1,0 +1,1 @@
+"""Studies: corner cases, worst cases, methods, true surfaces."""

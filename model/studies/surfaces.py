@@ -1,0 +1,195 @@
+"""The surfaces behind meshes: which point the eye sees at a dot, and how the normal turns there.
+
+Sphere and torus are met by rays in closed form or as roots of a quartic, the Bezier patch by
+Newton's method, so that what a mesh loses can be measured against the surface itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+
+from phong75.model.front import shapes
+from phong75.model.front.mesh import Mesh, normalize
+from phong75.model.front.shapes import bernstein, bernstein_slope
+
+
+class Surface(Protocol):
+    """A smooth surface of which meshes can be made, finer and finer."""
+
+    name: str
+    levels: tuple[int, ...]  # numbers of steps once round (patch: from border to border)
+
+    def mesh(self, level: int) -> Mesh:
+        """The mesh with `level` steps, its corners on the surface with the surface's normals."""
+
+    def see(self, origin: np.ndarray, back: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What rays meet first that run through `origin` (float64[n, 3]) against `back` (unit
+        float64[3], towards the eye): whether anything, bool[n], and unit normals there."""
+
+    def turn(self, mesh: Mesh, tangent: np.ndarray) -> np.ndarray:
+        """How the unit normal changes at the corners of `mesh` for steps `tangent` (float64
+        [F, 3, 3]) in the tangent plane: float64[F, 3, 3]."""
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """The unit sphere, half as many rings as segments."""
+
+    name: str = "sphere"
+    levels: tuple[int, ...] = (8, 16, 32, 64, 128, 256)
+
+    def mesh(self, level: int) -> Mesh:
+        """See `Surface`."""
+        return shapes.sphere(1.0, level, level // 2)
+
+    def see(self, origin, back):
+        """See `Surface`."""
+        along = origin @ back
+        foot = origin - along[:, None] * back
+        square = 1.0 - np.sum(foot * foot, axis=1)
+        return square >= 0, foot + np.sqrt(np.maximum(square, 0.0))[:, None] * back
+
+    def turn(self, mesh, tangent):
+        """See `Surface`: the normal is the point."""
+        return tangent
+
+
+@dataclass(frozen=True)
+class Torus:
+    """A torus round the z axis, radii 1 and `tube`, half as many sides as segments."""
+
+    name: str = "torus"
+    levels: tuple[int, ...] = (8, 16, 32, 64, 128, 256)
+    tube: float = 0.4
+
+    def mesh(self, level: int) -> Mesh:
+        """See `Surface`."""
+        return shapes.torus(1.0, self.tube, level, level // 2)
+
+    def normal(self, points: np.ndarray) -> np.ndarray:
+        """Unit normals at `points` (float64[..., 3]), along the normal's line also off it."""
+        ring = points[..., :2] / np.linalg.norm(points[..., :2], axis=-1, keepdims=True)
+        return normalize(points - np.concatenate([ring, np.zeros_like(ring[..., :1])], axis=-1))
+
+    def see(self, origin, back):
+        """See `Surface`: the largest real root of (|P|^2 + 1 - r^2)^2 = 4 (x^2 + y^2)."""
+        a, b = origin @ back, np.sum(origin * origin, axis=1) + 1.0 - self.tube**2
+        xy, direction = origin[:, :2], back[:2]
+        one = np.ones_like(a)
+        quartic = np.stack(
+            [
+                one, 4 * a, 4 * a * a + 2 * b - 4 * direction @ direction,
+                4 * a * b - 8 * (xy @ direction), b * b - 4 * np.sum(xy * xy, axis=1),
+            ], axis=1,
+        )  # fmt: skip
+        companion = np.zeros((len(a), 4, 4))
+        companion[:, 1:, :3] = np.eye(3)
+        companion[:, 0] = -quartic[:, 1:]
+        roots = np.linalg.eigvals(companion)
+        real = np.abs(roots.imag) < 1e-6
+        t = np.max(np.where(real, roots.real, -np.inf), axis=1)
+        hit = np.isfinite(t)
+        t = np.where(hit, t, 0.0)
+        for _ in range(2):  # polished, but where the ray only just touches
+            value, slope = _polynomial(quartic, t), _polynomial(quartic * [4, 3, 2, 1, 0], t, 4)
+            t = t - np.where(np.abs(slope) > 1e-6, value / np.where(slope == 0, 1, slope), 0.0)
+        return hit, self.normal(origin + t[:, None] * back)
+
+    def turn(self, mesh, tangent):
+        """See `Surface`: the normal is the gradient of the distance, also beside the surface."""
+        points, step = mesh.vertices[mesh.faces], 1e-5
+        return (self.normal(points + step * tangent) - self.normal(points - step * tangent)) / (
+            2 * step
+        )
+
+
+def _polynomial(coefficients, t, terms: int = 5):
+    value = np.zeros_like(t)
+    for k in range(terms):
+        value = value * t + coefficients[:, k]
+    return value
+
+
+@dataclass(frozen=True)
+class Patch:
+    """A patch of the teapot: the upper body, a quarter of the way round."""
+
+    name: str = "patch"
+    levels: tuple[int, ...] = (1, 2, 4, 8, 16, 32)
+    number: int = 4
+
+    @cached_property
+    def control(self) -> np.ndarray:
+        """float64[4, 4, 3]: the control points, by u, then v."""
+        return shapes.teapot_patch(self.number)
+
+    def mesh(self, level: int) -> Mesh:
+        """See `Surface`."""
+        return shapes.patch_mesh(self.control, level)
+
+    def at(self, u: np.ndarray, v: np.ndarray):
+        """Points, dS/du and dS/dv at parameters `u`, `v` (float64[n]), float64[n, 3] each."""
+        in_u, in_v = (bernstein(u), bernstein_slope(u)), (bernstein(v), bernstein_slope(v))
+        return [
+            (in_u[i][:, :, None] * in_v[j][:, None, :]).reshape(-1, 16)
+            @ self.control.reshape(16, 3)
+            for i, j in ((0, 0), (1, 0), (0, 1))
+        ]
+
+    def see(self, origin, back):
+        """See `Surface`: Newton's method from the nearest of a grid of points of the patch.
+
+        A view is meant in which no ray meets the patch twice.
+        """
+        axis = np.eye(3)[np.argmin(np.abs(back))]
+        right = normalize(np.cross(axis, back))
+        screen = np.stack([right, np.cross(back, right)])
+        want, hull = origin @ screen.T, self.control.reshape(-1, 3) @ screen.T
+        near = np.all((want >= hull.min(axis=0)) & (want <= hull.max(axis=0)), axis=1)
+        hit, normal = np.zeros(len(want), bool), np.zeros((len(want), 3))
+        hit[near], normal[near] = self._solve(want[near], screen)
+        return hit, normal
+
+    def _solve(self, want, screen):
+        """Where the patch is at `want` (float64[n, 2]) on the `screen` (float64[2, 3]), if it is,
+        and its normals there."""
+        grid = np.linspace(0, 1, 33)
+        u0, v0 = (c.reshape(-1) for c in np.meshgrid(grid, grid))
+        known = self.at(u0, v0)[0] @ screen.T
+        nearest = np.empty(len(want), np.int64)
+        for block in np.array_split(np.arange(len(want)), len(want) // 20_000 + 1):
+            away = np.sum(known * known, axis=1) - 2 * want[block] @ known.T
+            nearest[block] = np.argmin(away, axis=1)
+        u, v = u0[nearest], v0[nearest]
+        for _ in range(8):
+            point, du, dv = self.at(u, v)
+            miss, a, b = want - point @ screen.T, du @ screen.T, dv @ screen.T
+            det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+            det = np.where(np.abs(det) < 1e-12, 1e-12, det)
+            u = np.clip(u + (miss[:, 0] * b[:, 1] - miss[:, 1] * b[:, 0]) / det, -0.2, 1.2)
+            v = np.clip(v + (a[:, 0] * miss[:, 1] - a[:, 1] * miss[:, 0]) / det, -0.2, 1.2)
+        point, du, dv = self.at(u, v)
+        met = np.linalg.norm(want - point @ screen.T, axis=1) < 1e-10
+        hit = met & (np.minimum(u, v) >= 0) & (np.maximum(u, v) <= 1)
+        return hit, normalize(np.cross(dv, du))
+
+    def turn(self, mesh, tangent):
+        """See `Surface`: by the parameters of the corners."""
+        steps = round(len(mesh.vertices) ** 0.5) - 1
+        corner = mesh.faces.reshape(-1)
+        u, v = (corner % (steps + 1)) / steps, (corner // (steps + 1)) / steps
+        _, du, dv = self.at(u, v)
+        basis = np.stack([du, dv], axis=-1)
+        step = np.einsum("nij,nj->ni", np.linalg.pinv(basis), tangent.reshape(-1, 3)) * 1e-5
+        ahead, behind = (
+            normalize(np.cross(*self.at(u + s * step[:, 0], v + s * step[:, 1])[:0:-1]))
+            for s in (1, -1)
+        )
+        return ((ahead - behind) / 2e-5).reshape(tangent.shape)
+
+
+SURFACES: dict[str, Surface] = {s.name: s for s in (Sphere(), Torus(), Patch())}

@@ -1,0 +1,1 @@
+"""Twins of rtl/core/: the paper's pipeline."""

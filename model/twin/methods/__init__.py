@@ -1,0 +1,1 @@
+"""Twins of rtl/methods/: other ways to the same result."""

@@ -1,0 +1,1 @@
+"""Twins of rtl/pruning/: what pruned builds add."""

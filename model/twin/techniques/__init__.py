@@ -1,0 +1,1 @@
+"""Twins of rtl/techniques/: Gouraud's and flat shading."""

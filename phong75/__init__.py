@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+"""Phong75's model: scenes to spans, the bit-accurate twin, the float64 reference.
+
+import phong75
+front = phong75.front_end(phong75.load_scene("teapot"))
+pixels = phong75.render(front.frame)             # to the bit what the RTL gives
+exact = phong75.reference.render(front.frame)    # 255 * S in float64
+"""
+
+from phong75.model import (
+    DEFAULT,
+    SPAN_DTYPE,
+    TECHNIQUES,
+    Config,
+    ExactFrame,
+    Format,
+    Frame,
+    FrontEnd,
+    InputError,
+    MaterialTable,
+    Pixels,
+    Scene,
+    bundled_scenes,
+    front_end,
+    load_scene,
+    read_spans,
+    reference,
+    render,
+    twin,
+    write_spans,
+)
+
+__version__ = "0.2.0"
+
+__all__ = [
+    "DEFAULT",
+    "SPAN_DTYPE",
+    "TECHNIQUES",
+    "Config",
+    "ExactFrame",
+    "Format",
+    "Frame",
+    "FrontEnd",
+    "InputError",
+    "MaterialTable",
+    "Pixels",
+    "Scene",
+    "__version__",
+    "bundled_scenes",
+    "front_end",
+    "load_scene",
+    "read_spans",
+    "reference",
+    "render",
+    "twin",
+    "write_spans",
+]

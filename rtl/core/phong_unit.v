@@ -1,0 +1,266 @@
+// phong_unit: the paper's proposal, between the walker and the FIFO: three interpolators in
+// parallel
+// for the normal, a normalizer, the shading function.
+// One pixel a clock; PHONG_PIXEL_LATENCY clocks from a pixel of the walker to its colour.
+// Wiring in data order.
+`default_nettype none
+`include "phong_config.vh"
+`include "latency.vh"
+
+module phong_unit (
+    input wire clk,
+    input wire reset,  // synchronous; of the flags only
+
+    // write port for registers and material table (see register_map); hold during a frame
+    input wire                                                   write_enable,
+    input wire [`PHONG_MATERIAL_BITS+`PHONG_WEIGHT_INDEX_BITS:0] write_address,
+    input wire [2*`PHONG_COEFFICIENT_BITS:0]                     write_word,
+
+    // a span, in the clock in which it is taken
+    input wire                            taken,
+    input wire [6*`PHONG_NORMAL_BITS-1:0] values,    // {step z, y, x, start z, y, x}, s1.30
+    input wire [`PHONG_COORDINATE_BITS:0] length,    // pixels
+    input wire [`PHONG_MATERIAL_BITS-1:0] material,
+
+    // its pixels
+    input wire                              load,            // this one is the last of its span
+    input wire                              advance,         // to the next one
+    input wire                              pixel_valid,
+    input wire [`PHONG_COORDINATE_BITS-1:0] pixel_x,
+    input wire [`PHONG_COORDINATE_BITS-1:0] pixel_y,
+    input wire [`PHONG_MATERIAL_BITS-1:0]   pixel_material,
+
+    output wire [`PHONG_COLOUR_BITS-1:0] red,          // codes
+    output wire [`PHONG_COLOUR_BITS-1:0] green,
+    output wire [`PHONG_COLOUR_BITS-1:0] blue,
+    output wire                          overflow,     // a component has left its word since load
+    // for one clock: a pixel's is the zero vector
+    output wire                          zero_normal,
+    // for one clock: this build leaves something out
+    output wire                          unsupported
+);
+
+  localparam HOLD_UNLIT       = `PHONG_HOLD_UNLIT;
+  localparam NORMAL_METHOD    = `PHONG_NORMAL_METHOD;
+  localparam NORMAL_BITS      = `PHONG_NORMAL_BITS;
+  localparam MATERIAL_BITS    = `PHONG_MATERIAL_BITS;
+  localparam COEFFICIENT_BITS = `PHONG_COEFFICIENT_BITS;
+  localparam INDEX_BITS       = `PHONG_WEIGHT_INDEX_BITS;
+  localparam HALF_BITS        = `PHONG_HALF_VECTOR_BITS;
+  localparam UNIT_BITS        = `PHONG_UNIT_BITS;
+  localparam COSINE_BITS      = `PHONG_COSINE_BITS;
+  localparam VERSINE_BITS     = `PHONG_VERSINE_BITS;
+  localparam INTERPOLATE_X    = `PHONG_INTERPOLATE_X;
+  localparam INTERPOLATE_Y    = `PHONG_INTERPOLATE_Y;
+  localparam INTERPOLATE_Z    = `PHONG_INTERPOLATE_Z;
+  localparam IDLE_STEP_BITS   = `PHONG_IDLE_STEP_BITS;
+
+  // ---- registers ----
+  wire [HALF_BITS-1:0] half_x, half_z;
+  wire two_sided;
+  wire write_weight, write_exponent;
+  wire [2:0] write_ambient, write_diffuse;
+  wire [MATERIAL_BITS+INDEX_BITS-1:0] table_address;
+  wire [2*COEFFICIENT_BITS:0] table_word;
+  wire unsupported_write, unsupported_span;
+
+  register_map u_register_map (
+      .clk(clk),
+      .write_enable(write_enable),
+      .write_address(write_address),
+      .write_word(write_word),
+      .half_x(half_x),
+      .half_z(half_z),
+      .two_sided(two_sided),
+      .write_weight(write_weight),
+      .write_exponent(write_exponent),
+      .write_ambient(write_ambient),
+      .write_diffuse(write_diffuse),
+      .table_address(table_address),
+      .table_word(table_word),
+      .unsupported(unsupported_write)
+  );
+
+  assign unsupported = unsupported_write | unsupported_span;
+
+  // ---- spans: what none has in this build is constant from here on; the guard finds those ----
+  wire [NORMAL_BITS-1:0] start_x, start_y, start_z;
+  wire [NORMAL_BITS-1:0] step_x, step_y, step_z;
+  wire [NORMAL_BITS-1:0] normal_x, normal_y, normal_z;
+  wire overflow_x, overflow_y, overflow_z;
+
+  assign {step_z, step_y, step_x, start_z, start_y, start_x} = values;
+  assign overflow = overflow_x | overflow_y | overflow_z;
+
+  wire [NORMAL_BITS-1:0] slope_x =
+      INTERPOLATE_X ? $signed(step_x << IDLE_STEP_BITS) >>> IDLE_STEP_BITS : 0;
+  wire [NORMAL_BITS-1:0] slope_y =
+      INTERPOLATE_Y ? $signed(step_y << IDLE_STEP_BITS) >>> IDLE_STEP_BITS : 0;
+  wire [NORMAL_BITS-1:0] slope_z =
+      INTERPOLATE_Z ? $signed(step_z << IDLE_STEP_BITS) >>> IDLE_STEP_BITS : 0;
+
+  span_guard u_span_guard (
+      .clk(clk),
+      .reset(reset),
+      .taken(taken),
+      .step_x(step_x),
+      .step_y(step_y),
+      .step_z(step_z),
+      .length(length),
+      .material(material),
+      .pixel_valid(pixel_valid),
+      .at_end(load),
+      .pixel_x(pixel_x),
+      .pixel_y(pixel_y),
+      .normal_x(normal_x),
+      .normal_y(normal_y),
+      .normal_z(normal_z),
+      .unsupported(unsupported_span)
+  );
+
+  // ---- three interpolators in parallel ----
+  linear_interpolator u_interpolator_x (
+      .clk(clk),
+      .load(load),
+      .advance(advance),
+      .start(start_x),
+      .step(slope_x),
+      .value(normal_x),
+      .overflow(overflow_x)
+  );
+
+  linear_interpolator u_interpolator_y (
+      .clk(clk),
+      .load(load),
+      .advance(advance),
+      .start(start_y),
+      .step(slope_y),
+      .value(normal_y),
+      .overflow(overflow_y)
+  );
+
+  linear_interpolator u_interpolator_z (
+      .clk(clk),
+      .load(load),
+      .advance(advance),
+      .start(start_z),
+      .step(slope_z),
+      .value(normal_z),
+      .overflow(overflow_z)
+  );
+
+  // ---- unit normal ----
+  wire [UNIT_BITS-1:0] unit_x, unit_y, unit_z;
+  wire [COSINE_BITS-1:0] cosine;
+  wire lit;
+  wire [MATERIAL_BITS-1:0] shaded_material;
+  wire [NORMAL_BITS-1:0] held_x, held_y, held_z;
+  wire held_valid, shown, lit_normal;
+
+  generate
+    if (HOLD_UNLIT) begin : gen_hold
+      wire shown_now;
+
+      normal_hold u_normal_hold (
+          .clk(clk),
+          .two_sided(two_sided),
+          .valid(pixel_valid),
+          .x(normal_x),
+          .y(normal_y),
+          .z(normal_z),
+          .held_valid(held_valid),
+          .shown(shown_now),
+          .held_x(held_x),
+          .held_y(held_y),
+          .held_z(held_z)
+      );
+
+      delay #(
+          .BITS  (1),
+          .CYCLES(`PHONG_NORMAL_LATENCY - 1)
+      ) u_shown (
+          .clk(clk),
+          .in (shown_now),
+          .out(shown)
+      );
+    end else begin : gen_no_hold
+      assign {held_x, held_y, held_z} = {normal_x, normal_y, normal_z};
+      assign held_valid = pixel_valid;
+      assign shown = 1'b1;
+    end
+
+    if (NORMAL_METHOD == `PHONG_NORMAL_METHOD_NONE) begin : gen_unnormalized
+      unnormalized u_unnormalized (
+          .clk(clk),
+          .two_sided(two_sided),
+          .x(held_x),
+          .y(held_y),
+          .z(held_z),
+          .unit_x(unit_x),
+          .unit_y(unit_y),
+          .unit_z(unit_z),
+          .cosine(cosine),
+          .lit(lit_normal)
+      );
+
+      assign zero_normal = 1'b0;  // nobody divides by its length
+
+      wire unused = &{1'b0, held_valid};
+    end else begin : gen_normalized
+      normalizer u_normalizer (
+          .clk(clk),
+          .reset(reset),
+          .two_sided(two_sided),
+          .valid(held_valid),
+          .half_x(half_x),
+          .half_z(half_z),
+          .x(held_x),
+          .y(held_y),
+          .z(held_z),
+          .unit_x(unit_x),
+          .unit_y(unit_y),
+          .unit_z(unit_z),
+          .cosine(cosine),
+          .lit(lit_normal),
+          .zero_normal(zero_normal)
+      );
+    end
+  endgenerate
+
+  assign lit = lit_normal & shown;
+
+  delay #(
+      .BITS  (MATERIAL_BITS),
+      .CYCLES(`PHONG_NORMAL_LATENCY)
+  ) u_material (
+      .clk(clk),
+      .in (pixel_material),
+      .out(shaded_material)
+  );
+
+  // ---- colour ----
+  shading_unit u_shading_unit (
+      .clk(clk),
+      .half_x(half_x),
+      .half_z(half_z),
+      .write_weight(write_weight),
+      .write_exponent(write_exponent),
+      .write_ambient(write_ambient),
+      .write_diffuse(write_diffuse),
+      .write_address(table_address),
+      .write_word(table_word),
+      .unit_x(unit_x),
+      .unit_y(unit_y),
+      .unit_z(unit_z),
+      .given_versine({VERSINE_BITS{1'b0}}),
+      .cosine(cosine),
+      .lit(lit),
+      .material(shaded_material),
+      .red(red),
+      .green(green),
+      .blue(blue)
+  );
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,184 @@
+// register_map: the write port: registers, and strobes for the material table.
+// Write only between frames: what is written changes the pixels in flight.
+// Latency 1 to the strobes, 2 to the registers.
+`default_nettype none
+`include "phong_config.vh"
+
+module register_map #(
+    parameter MATERIAL_BITS        = `PHONG_MATERIAL_BITS,
+    parameter INDEX_BITS           = `PHONG_WEIGHT_INDEX_BITS,
+    parameter COEFFICIENT_BITS     = `PHONG_COEFFICIENT_BITS,
+    parameter HALF_BITS            = `PHONG_HALF_VECTOR_BITS,
+    parameter EXPONENT_BITS        = `PHONG_EXPONENT_BITS,
+    parameter EXPONENT_FRACTION    = `PHONG_EXPONENT_FRACTION,
+    parameter POWER_BITS           = `PHONG_POWER_BITS,
+    parameter SPECULAR             = `PHONG_SPECULAR,
+    parameter POWER_FUNCTION       = `PHONG_POWER_FUNCTION,
+    parameter POWER_BYPASS         = `PHONG_POWER_BYPASS,
+    parameter LOG_OCTAVES          = `PHONG_LOG_OCTAVES,
+    parameter WEIGHT_FUNCTION      = `PHONG_WEIGHT_FUNCTION,
+    parameter DIFFUSE              = `PHONG_DIFFUSE,
+    parameter AMBIENT          = `PHONG_AMBIENT,
+    parameter CHANNELS             = `PHONG_CHANNELS,
+    parameter TWO_SIDED            = `PHONG_TWO_SIDED,
+    parameter CONSTANT_HALF_VECTOR = `PHONG_CONSTANT_HALF_VECTOR,
+    parameter CONSTANT_X           = `PHONG_CONSTANT_HALF_VECTOR_X,
+    parameter CONSTANT_Z           = `PHONG_CONSTANT_HALF_VECTOR_Z,
+    parameter CONSTANT_EXPONENT    = `PHONG_CONSTANT_EXPONENT,
+    parameter CONSTANT_WEIGHT      = `PHONG_CONSTANT_WEIGHT,
+    parameter CONSTANT_AMBIENT     = `PHONG_CONSTANT_AMBIENT,
+    parameter CONSTANT_DIFFUSE     = `PHONG_CONSTANT_DIFFUSE
+) (
+    input wire clk,
+
+    // address {0, material, interval}: word {step s1.16, left u1.16} of W(i)
+    // address {1, material, field}: fields below
+    input wire                                write_enable,
+    input wire [MATERIAL_BITS+INDEX_BITS:0] write_address,
+    input wire [      2*COEFFICIENT_BITS:0] write_word,
+
+    // registers
+    output wire [HALF_BITS-1:0] half_x,  // s0.17
+    output wire [HALF_BITS-1:0] half_z,
+    output wire                 two_sided,
+
+    // material table
+    output reg                                write_weight,
+    output reg                                write_exponent,
+    output reg [                         2:0] write_ambient,  // blue, green, red
+    output reg [                         2:0] write_diffuse,
+    output reg [MATERIAL_BITS+INDEX_BITS-1:0] table_address,
+    output reg [        2*COEFFICIENT_BITS:0] table_word,
+
+    output wire unsupported  // for one clock: a word asks for what this build leaves out
+);
+
+  localparam [INDEX_BITS-1:0] AMBIENT_RED = `PHONG_FIELD_AMBIENT;
+  localparam [INDEX_BITS-1:0] DIFFUSE_RED = `PHONG_FIELD_DIFFUSE;
+  localparam [INDEX_BITS-1:0] EXPONENT = `PHONG_FIELD_EXPONENT;
+  localparam [INDEX_BITS-1:0] HALF_X = `PHONG_FIELD_HALF_X;  // of any material
+  localparam [INDEX_BITS-1:0] HALF_Z = `PHONG_FIELD_HALF_Z;
+  localparam [INDEX_BITS-1:0] CONTROL = `PHONG_FIELD_CONTROL;  // bit 0: two-sided
+
+  wire is_weight = ~write_address[MATERIAL_BITS+INDEX_BITS];
+  wire [INDEX_BITS-1:0] field = write_address[INDEX_BITS-1:0];
+  wire write_field = write_enable & ~is_weight;
+  reg write_half_x, write_half_z, write_control;
+
+  integer c;
+  always @(posedge clk) begin
+    write_weight <= write_enable & is_weight;
+    write_exponent <= write_field & (field == EXPONENT);
+    write_half_x <= write_field & (field == HALF_X);
+    write_half_z <= write_field & (field == HALF_Z);
+    write_control <= write_field & (field == CONTROL);
+    for (c = 0; c < 3; c = c + 1) begin
+      write_ambient[c] <= write_field & (field == AMBIENT_RED + c[INDEX_BITS-1:0]);
+      write_diffuse[c] <= write_field & (field == DIFFUSE_RED + c[INDEX_BITS-1:0]);
+    end
+    table_address <= write_address[MATERIAL_BITS+INDEX_BITS-1:0];
+    table_word <= write_word;
+  end
+
+  // ---- registers ----
+  generate
+    if (CONSTANT_HALF_VECTOR) begin : gen_constant_half_vector
+      assign half_x = CONSTANT_X;
+      assign half_z = CONSTANT_Z;
+    end else begin : gen_half_vector
+      reg [HALF_BITS-1:0] x, z;
+
+      always @(posedge clk) begin
+        if (write_half_x) x <= table_word[HALF_BITS-1:0];
+        if (write_half_z) z <= table_word[HALF_BITS-1:0];
+      end
+
+      assign half_x = x;
+      assign half_z = z;
+    end
+
+    if (TWO_SIDED) begin : gen_two_sided
+      reg two_sided_held;
+      always @(posedge clk) if (write_control) two_sided_held <= table_word[0];
+      assign two_sided = two_sided_held;
+    end else begin : gen_one_sided
+      assign two_sided = 1'b0;
+    end
+  endgenerate
+
+  // ---- words that ask for what is left out ----
+  // From this n on 2^-n is 0 in the word of cos(s)^n.
+  localparam [EXPONENT_BITS-1:0] ONE = 1 << EXPONENT_FRACTION;
+  localparam [EXPONENT_BITS-1:0] VANISHES = (POWER_BITS + 1) << EXPONENT_FRACTION;
+
+  wire [COEFFICIENT_BITS-1:0] code = table_word[COEFFICIENT_BITS-1:0];
+  wire [COEFFICIENT_BITS:0] step = table_word[2*COEFFICIENT_BITS:COEFFICIENT_BITS];
+  wire [EXPONENT_BITS-1:0] n = table_word[EXPONENT_BITS-1:0];
+  wire [HALF_BITS-1:0] half = table_word[HALF_BITS-1:0];
+
+  generate
+    if (SPECULAR && POWER_FUNCTION && POWER_BYPASS && LOG_OCTAVES && WEIGHT_FUNCTION && DIFFUSE
+        && AMBIENT && CHANNELS == 3 && TWO_SIDED && !CONSTANT_HALF_VECTOR
+        && !CONSTANT_EXPONENT && !CONSTANT_WEIGHT && !CONSTANT_AMBIENT
+        && !CONSTANT_DIFFUSE) begin : gen_everything
+      assign unsupported = 1'b0;
+      wire unused = &{1'b0, code, step, n, half, ONE, VANISHES};
+    end else begin : gen_check
+      // Nobody waits for the flag: what the word is, whether that is missing where it goes to, any.
+      reg nonzero_word, nonzero_code, nonzero_step, is_one, is_small, asks_two_sided;
+      reg other_x, other_z, other_n, other_w;
+      reg [2:0] other_ambient, other_diffuse;
+      reg to_x, to_z, to_n, to_control, to_weight;
+      reg [2:0] to_ambient, to_diffuse;
+      reg [11:0] missing;
+      reg flagged;
+
+      always @(posedge clk) begin
+        nonzero_word <= table_word != 0;
+        nonzero_code <= code != 0;
+        nonzero_step <= step != 0;
+        is_one <= n == ONE;
+        is_small <= n < VANISHES;
+        asks_two_sided <= table_word[0];
+        other_x <= half != half_x;
+        other_z <= half != half_z;
+        other_n <= n != `PHONG_CONSTANT_EXPONENT_N;
+        other_w <= code != `PHONG_CONSTANT_WEIGHT_W;
+        other_ambient[0] <= code != `PHONG_CONSTANT_AMBIENT_RED;
+        other_ambient[1] <= code != `PHONG_CONSTANT_AMBIENT_GREEN;
+        other_ambient[2] <= code != `PHONG_CONSTANT_AMBIENT_BLUE;
+        other_diffuse[0] <= code != `PHONG_CONSTANT_DIFFUSE_RED;
+        other_diffuse[1] <= code != `PHONG_CONSTANT_DIFFUSE_GREEN;
+        other_diffuse[2] <= code != `PHONG_CONSTANT_DIFFUSE_BLUE;
+        to_x <= write_half_x;
+        to_z <= write_half_z;
+        to_n <= write_exponent & (SPECULAR != 0);  // else no exponent is of use
+        to_control <= write_control;
+        to_weight <= write_weight;
+        to_ambient <= write_ambient;
+        to_diffuse <= write_diffuse;
+
+        missing[0] <= (SPECULAR == 0) & to_weight & nonzero_word;
+        missing[1] <= (WEIGHT_FUNCTION == 0) & to_weight & nonzero_step;
+        missing[2] <= (POWER_FUNCTION == 0) & to_n & ~is_one;
+        missing[3] <= (POWER_FUNCTION != 0) & (POWER_BYPASS == 0) & to_n & is_one;
+        missing[4] <= (LOG_OCTAVES == 0) & to_n & ~is_one & is_small;
+        missing[5] <= (DIFFUSE == 0) & |to_diffuse & nonzero_code;
+        missing[6] <= (AMBIENT == 0) & |to_ambient & nonzero_code;
+        missing[7] <= (CHANNELS < 3) & |{to_ambient[2:1], to_diffuse[2:1]};
+        missing[8] <= (TWO_SIDED == 0) & to_control & asks_two_sided;
+        missing[9] <= (CONSTANT_HALF_VECTOR != 0) & (to_x & other_x | to_z & other_z)
+            | (CONSTANT_EXPONENT != 0) & to_n & other_n
+            | (CONSTANT_WEIGHT != 0) & to_weight & other_w;
+        missing[10] <= (CONSTANT_AMBIENT != 0) & |(to_ambient & other_ambient);
+        missing[11] <= (CONSTANT_DIFFUSE != 0) & |(to_diffuse & other_diffuse);
+        flagged <= |missing;
+      end
+
+      assign unsupported = flagged;
+    end
+  endgenerate
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,44 @@
+// specular_power: cos(s)^n by the method that the configuration names.
+`default_nettype none
+`include "phong_config.vh"
+`include "latency.vh"
+
+module specular_power (
+    input  wire                            clk,
+    input  wire [`PHONG_VERSINE_BITS-1:0]  versine,   // u0.22, 1 - cos(s)
+    // u8.9, n, PHONG_EXPONENT_LATENCY after versine
+    input  wire [`PHONG_EXPONENT_BITS-1:0] exponent,
+    output wire [`PHONG_POWER_BITS-1:0]    power      // u0.18, cos(s)^n
+);
+
+  localparam METHOD  = `PHONG_POWER_METHOD;
+  localparam LATENCY = `PHONG_SPECULAR_POWER_LATENCY;
+
+  generate
+    if (METHOD == `PHONG_POWER_METHOD_TABLES) begin : gen_tables
+      specular_power_tables u_method (
+          .clk(clk),
+          .versine(versine),
+          .exponent(exponent),
+          .power(power)
+      );
+    end else if (METHOD == `PHONG_POWER_METHOD_SQUARING) begin : gen_squaring
+      specular_power_squaring u_method (
+          .clk(clk),
+          .versine(versine),
+          .exponent(exponent),
+          .power(power)
+      );
+    end else begin : gen_schlick
+      specular_power_schlick u_method (
+          .clk(clk),
+          .versine(versine),
+          .exponent(exponent),
+          .power(power)
+      );
+    end
+  endgenerate
+
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,151 @@
+// inverse_sqrt_quadratic: 1/sqrt(x), x in [1, 4), by a table of parabolas,
+//   value - t (slope - t curve), t from 0 to 1 over a segment.
+// x below 1 is read as 1 + x. One result a clock; latency below.
+`default_nettype none
+`include "phong_config.vh"
+`include "latency.vh"
+
+module inverse_sqrt_quadratic (
+    input  wire                                clk,
+    input  wire [`PHONG_ROOT_OPERAND_BITS-1:0] operand,  // u2.20, x
+    output wire [`PHONG_ROOT_BITS-1:0]         root      // u0.18, 1/sqrt(x), in (1/2, 1]
+);
+
+  localparam OPERAND_BITS = `PHONG_ROOT_OPERAND_BITS;
+  localparam INDEX_BITS   = `PHONG_QUADRATIC_INDEX_BITS;
+  localparam VALUE_BITS   = `PHONG_QUADRATIC_VALUE_BITS;
+  localparam SLOPE_BITS   = `PHONG_QUADRATIC_SLOPE_BITS;
+  localparam CURVE_BITS   = `PHONG_QUADRATIC_CURVE_BITS;
+  localparam ROOT_BITS    = `PHONG_ROOT_BITS;
+  localparam LATENCY      = `PHONG_INVERSE_SQRT_QUADRATIC_LATENCY;
+
+  localparam OFFSET_BITS = OPERAND_BITS - 1 - INDEX_BITS;
+  localparam LINE_BITS   = VALUE_BITS + 3;  // slope and curve are three bits finer than value
+
+  // ---- lookup: segment and offset t below the leading one ----
+  wire high = operand[OPERAND_BITS-1];
+
+  reg [INDEX_BITS:0] address_p1;
+  reg [OFFSET_BITS-1:0] offset_p1;
+
+  always @(posedge clk) begin
+    address_p1 <= {high, high ? operand[OPERAND_BITS-2-:INDEX_BITS]
+                              : operand[OPERAND_BITS-3-:INDEX_BITS]};
+    offset_p1 <= high ? operand[OFFSET_BITS-1:0] : {operand[OFFSET_BITS-2:0], 1'b0};
+  end
+
+  wire [VALUE_BITS-1:0] value_p3;
+  wire [SLOPE_BITS-1:0] slope_p3;
+  wire [CURVE_BITS-1:0] curve_p3;
+  wire [OFFSET_BITS-1:0] offset_p3;
+
+  rom #(
+      .ADDRESS_BITS(INDEX_BITS + 1),
+      .WORD_BITS(VALUE_BITS + SLOPE_BITS + CURVE_BITS),
+      .CONTENTS(`PHONG_INVERSE_SQRT_PARABOLAS_TABLE)
+  ) u_table (
+      .clk(clk),
+      .address(address_p1),
+      .word({value_p3, slope_p3, curve_p3})
+  );
+
+  delay #(
+      .BITS  (OFFSET_BITS),
+      .CYCLES(`PHONG_ROM_LATENCY)
+  ) u_offset (
+      .clk(clk),
+      .in (offset_p1),
+      .out(offset_p3)
+  );
+
+  // ---- bend: slope - curve * t, 0 or more ----
+  wire [CURVE_BITS+OFFSET_BITS-1:0] bend_p5;
+  wire [SLOPE_BITS-1:0] slope_p5;
+  wire [OFFSET_BITS-1:0] offset_p6;
+  reg [SLOPE_BITS-1:0] slope_p6;
+
+  multiplier #(
+      .A_BITS  (CURVE_BITS),
+      .B_BITS  (OFFSET_BITS),
+      .A_SIGNED(0),
+      .B_SIGNED(0)
+  ) u_curve (
+      .clk(clk),
+      .a(curve_p3),
+      .b(offset_p3),
+      .product(bend_p5)
+  );
+
+  delay #(
+      .BITS  (SLOPE_BITS),
+      .CYCLES(`PHONG_MULTIPLIER_LATENCY)
+  ) u_slope_wait (
+      .clk(clk),
+      .in (slope_p3),
+      .out(slope_p5)
+  );
+
+  delay #(
+      .BITS  (OFFSET_BITS),
+      .CYCLES(`PHONG_MULTIPLIER_LATENCY + 1)
+  ) u_offset_wait (
+      .clk(clk),
+      .in (offset_p3),
+      .out(offset_p6)
+  );
+
+  always @(posedge clk) begin
+    slope_p6 <= slope_p5
+        - {{SLOPE_BITS - CURVE_BITS{1'b0}}, bend_p5[CURVE_BITS+OFFSET_BITS-1:OFFSET_BITS]};
+  end
+
+  wire unused_bend = &{1'b0, bend_p5[OFFSET_BITS-1:0]};
+
+  // ---- refine: value - slope * t ----
+  wire [SLOPE_BITS+OFFSET_BITS-1:0] drop_p8;
+  wire [VALUE_BITS-1:0] value_p8;
+  reg [LINE_BITS-1:0] line_p9;
+
+  multiplier #(
+      .A_BITS  (SLOPE_BITS),
+      .B_BITS  (OFFSET_BITS),
+      .A_SIGNED(0),
+      .B_SIGNED(0)
+  ) u_slope (
+      .clk(clk),
+      .a(slope_p6),
+      .b(offset_p6),
+      .product(drop_p8)
+  );
+
+  delay #(
+      .BITS  (VALUE_BITS),
+      .CYCLES(2 * `PHONG_MULTIPLIER_LATENCY + 1)
+  ) u_value (
+      .clk(clk),
+      .in (value_p3),
+      .out(value_p8)
+  );
+
+  always @(posedge clk) begin
+    line_p9 <= {value_p8, 3'b000}
+        - {{LINE_BITS - SLOPE_BITS{1'b0}}, drop_p8[SLOPE_BITS+OFFSET_BITS-1:OFFSET_BITS]};
+  end
+
+  wire unused = &{1'b0, drop_p8[OFFSET_BITS-1:0]};
+
+  // ---- round ----
+  round_saturate #(
+      .IN_BITS  (LINE_BITS),
+      .DROP     (LINE_BITS - ROOT_BITS),
+      .OUT_BITS (ROOT_BITS),
+      .IS_SIGNED(0)
+  ) u_round (
+      .clk(clk),
+      .in (line_p9),
+      .out(root)
+  );
+
+endmodule
+
+`default_nettype wire

