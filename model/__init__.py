@@ -11,7 +11,8 @@ from phong75.model.analysis import reference
 from phong75.model.config import DEFAULT, TECHNIQUES, Config, Format
 from phong75.model.frame import SPAN_DTYPE, ExactFrame, Frame, InputError, MaterialTable
 from phong75.model.front.scene import Scene, bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import FrontEnd, front_end
+from phong75.model.front.scene_to_spans import FrontEnd
+from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import read_spans, write_spans
 from phong75.model.twin import Pixels, render
 

@@ -268,11 +268,11 @@ MODULES = {
         ("unit_x", "unit_y", "unit_z", "cosine", "lit", "material"),
         (
             Stage(
-                "shading_unit.intensity",
+                "colour_channel.intensity",
                 tuple(f"gen_channel[{c}].u_channel.intensity_p5" for c in range(3)),
                 _sum(L.format("SHADING_UNIT"), -2),
             ),
-            Stage("shading_unit.code", ("red", "green", "blue"), L.format("SHADING_UNIT")),
+            Stage("colour_channel.code", ("red", "green", "blue"), L.format("SHADING_UNIT")),
         ),
         held=(
             ("half_x", "`PHONG_HALF_VECTOR_BITS"), ("half_z", "`PHONG_HALF_VECTOR_BITS"),
