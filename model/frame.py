@@ -51,8 +51,8 @@ class MaterialTable:
 
     def __repr__(self) -> str:
         terms = np.concatenate([self.ambient, self.diffuse, self.weight], axis=1)
-        lit = int(terms.any(axis=1).sum())
-        return f"MaterialTable({len(terms)} materials, {lit} of them not black)"
+        black = int((~terms.any(axis=1)).sum())
+        return f"MaterialTable(rows: {len(terms)}, black: {black})"
 
     @classmethod
     def empty(cls, config: Config) -> MaterialTable:
@@ -108,7 +108,7 @@ class Frame:
 
     def __repr__(self) -> str:
         pixels = int(np.maximum(self.spans["length"], 1).sum())
-        return f"Frame({self.width}x{self.height}, {len(self.spans)} spans, {pixels} pixels)"
+        return f"Frame({self.width}x{self.height}, spans: {len(self.spans)}, pixels: {pixels})"
 
 
 @dataclass(repr=False)
@@ -130,7 +130,7 @@ class ExactFrame:
 
     def __repr__(self) -> str:
         eye = ", ".join(f"{component:.3f}" for component in self.eye)
-        return f"ExactFrame({len(self.start)} spans, eye ({eye}))"
+        return f"ExactFrame(spans: {len(self.start)}, eye: ({eye}))"
 
 
 def half_vector_codes(eye: ArrayLike, config: Config) -> tuple[int, int]:

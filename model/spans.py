@@ -114,7 +114,8 @@ def illegal_spans(frame: Frame, config: Config) -> Flags:
     """
     steps = np.maximum(frame.spans["length"].astype(np.int64), 1) - 1
     end = frame.spans["start"] + steps[:, None] * frame.spans["step"]
-    return ~(config.normal.contains(frame.spans["start"]) & config.normal.contains(end)).all(axis=1)
+    legal = config.normal.contains(frame.spans["start"]) & config.normal.contains(end)
+    return np.any(~legal, axis=1)
 
 
 # -- writing ---------------------------------------------------------------------------------------

@@ -148,15 +148,15 @@ def inverse_sqrt_parabolas(config: Config) -> ParabolaTable:
     value = y[:, 0] - t[0] * (slope + curve * t[0])
     scale = 2.0**config.quadratic_value_bits
     bits = config.quadratic_value_bits, config.quadratic_slope_bits, config.quadratic_curve_bits
-    columns = [
+    values, slopes, curves = (
         np.clip(np.floor(column * factor + 0.5).astype(np.int64), 0, (1 << width) - 1)
         for column, factor, width in zip(
             (value, -slope, curve), (scale, 8 * scale, 8 * scale), bits, strict=True
         )
-    ]
+    )
     if (-slope * 8 * scale).max() >= 1 << bits[1] or (curve * 8 * scale).max() >= 1 << bits[2]:
         raise ValueError("table inverse_sqrt_parabolas: a slope or curve does not fit its bits")
-    return ParabolaTable("inverse_sqrt_parabolas", *columns, *bits)
+    return ParabolaTable("inverse_sqrt_parabolas", values, slopes, curves, *bits)
 
 
 @lru_cache

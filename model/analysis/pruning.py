@@ -57,7 +57,7 @@ class Facts:
     @property
     def shiny(self) -> Flags:
         """Which of the materials have a specular term, bool[m]. Only their exponents count."""
-        return self.weight.any(axis=1)
+        return np.any(self.weight != 0, axis=1)
 
 
 def facts(frame: Frame, config: Config) -> Facts:

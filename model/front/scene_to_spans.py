@@ -51,7 +51,7 @@ class VertexShader(Protocol):
         ...
 
 
-@dataclass
+@dataclass(repr=False)
 class FrontEnd:
     """What the front end makes of a scene.
 
@@ -64,6 +64,9 @@ class FrontEnd:
     exact: ExactFrame
     triangles: int
     degenerate_triangles: int
+
+    def __repr__(self) -> str:
+        return f"FrontEnd({self.frame}, triangles: {self.triangles})"
 
 
 def make_frame(
@@ -184,7 +187,7 @@ def visible(triangles: Triangles, width: int, height: int) -> Iterator[tuple[Seg
     strips = np.cumsum(change)[:height]  # on each line
     top = 0
     while top < height:
-        room = np.count_nonzero(np.cumsum(strips[top:]) <= visibility.BLOCK_STRIPS)
+        room = int(np.count_nonzero(np.cumsum(strips[top:]) <= visibility.BLOCK_STRIPS))
         lines = min(room, visibility.BLOCK_DOTS // width)
         bottom = min(top + max(lines, 1), height)
         here = np.flatnonzero((first < bottom) & (end > top))

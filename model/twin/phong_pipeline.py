@@ -19,7 +19,7 @@ from phong75.model.twin.techniques.flat_unit import flat_unit
 from phong75.model.twin.techniques.gouraud_unit import gouraud_unit
 
 
-@dataclass
+@dataclass(repr=False)
 class Pixels:
     """Pixels in the order of the stream.
 
@@ -34,6 +34,9 @@ class Pixels:
 
     def __len__(self) -> int:
         return len(self.x)
+
+    def __repr__(self) -> str:
+        return f"Pixels({len(self)}, last: {int(self.last.sum())})"
 
 
 def colours(frame: Frame, span: Ints, k: Ints, config: Config) -> Ints:

@@ -16,13 +16,13 @@ class Destination(NamedTuple):
     """Where a write goes.
 
     name: `weight` for an interval of W(i), else a key of `registers.FIELDS`, or "" for an address
-    that nothing listens to. material: row of the material table. index: the interval of W(i), or
+    that nothing listens to. material: row of the material table. entry: the interval of W(i), or
     the colour (0 to 2: red, green, blue).
     """
 
     name: str
     material: int
-    index: int
+    entry: int
 
 
 def register_map(address: int, config: Config) -> Destination:
@@ -58,12 +58,12 @@ def unsupported_write(address: int, word: int, built: Config) -> bool:
     if to.name == "exponent":
         return built.specular and _unsupported_exponent(word & built.exponent.max, built)
     if to.name in ("ambient", "diffuse"):
-        if to.index and built.channels < 3:
+        if to.entry and built.channels < 3:
             return True
         code = word & built.coefficient.max
         codes = getattr(built, f"constant_{to.name}")
         return (code != 0 and not getattr(built, to.name)) or (
-            bool(codes) and code != codes[to.index]
+            bool(codes) and code != codes[to.entry]
         )
     return False
 

@@ -23,11 +23,12 @@ def interpolate(frame: Frame, span: Ints, k: Ints, config: Config) -> tuple[Ints
     row = span - first
     z, _ = linear_interpolator(spans["start"][row, 2], spans["step"][row, 2], k, config)
     words = coefficients(spans, frame.half_vector, config)
-    square, cross_square = (
-        quadratic_interpolator(*(words[f"{name}_{d}"][row] for d in range(3)), k, config)
-        for name in ("square", "cross")
-    )
-    return z, square, cross_square
+
+    def along(name: str) -> Ints:
+        value, first_difference, second_difference = (words[f"{name}_{d}"][row] for d in range(3))
+        return quadratic_interpolator(value, first_difference, second_difference, k, config)
+
+    return z, along("square"), along("cross")
 
 
 def quadratic_unit(frame: Frame, span: Ints, k: Ints, config: Config) -> Ints:
