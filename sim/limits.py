@@ -14,7 +14,8 @@ import subprocess
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,9 +23,8 @@ _TICK = os.sysconf("SC_CLK_TCK")
 _POLL_S = 0.25
 
 
-def cpu_seconds(session: int) -> float:
-    """Processor time in seconds that the processes of `session` and their ended children took."""
-    total = 0
+def _members(session: int) -> Iterator[tuple[int, float]]:
+    """Number and processor time in seconds, with that of its ended children, of each process."""
     for stat in Path("/proc").glob("[0-9]*/stat"):
         try:
             # The name, in brackets, may hold anything; the session is the fourth field behind it.
@@ -32,8 +32,19 @@ def cpu_seconds(session: int) -> float:
         except OSError:  # it ended meanwhile
             continue
         if int(fields[3]) == session:
-            total += sum(map(int, fields[11:15]))  # user and system, its own and its children's
-    return total / _TICK
+            yield int(stat.parent.name), sum(map(int, fields[11:15])) / _TICK
+
+
+def cpu_seconds(session: int) -> float:
+    """Processor time in seconds that the processes of `session` and their ended children took."""
+    return sum(seconds for _, seconds in _members(session))
+
+
+def _end(session: int) -> None:
+    """Kill all of `session`, whatever process groups it has."""
+    for process, _ in _members(session):
+        with suppress(ProcessLookupError):
+            os.kill(process, signal.SIGKILL)
 
 
 @dataclass(frozen=True)
@@ -76,8 +87,10 @@ def run_limited(
                         out_of_time = True
                         break
         finally:
+            if out_of_time or process.poll() is None:
+                _end(process.pid)
             if process.poll() is None:
-                os.killpg(process.pid, signal.SIGKILL)
+                process.kill()  # where there is no /proc
                 process.wait()
         output.seek(0)
         text = output.read().decode(errors="replace")
