@@ -19,7 +19,7 @@ import pytest
 from phong75.sim.design import PACKAGE
 
 DURATIONS = PACKAGE / "results" / "test-durations.json"
-FAST_S = 0.6
+FAST_S = 0.4
 PROGRESS_S = 10
 
 
