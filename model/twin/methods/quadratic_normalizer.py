@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Twin of rtl/methods/quadratic_normalizer.v: cos(i) and 1 - cos(s) from Zn and two squares.
 
-The squares are |N|**2 and `cross_square`, the sum of squares of the x and y components of N x h
-(see `phong75.model.quadratic_spans`), so that 1 - cos(s) = 2 cross_square / |N|**2.
+The squares are |N|**2 and `cross_square` (C in the Verilog), the sum of squares of the x and y
+components of N x h (see `phong75.model.quadratic_spans`), so that 1 - cos(s) = 2 C / |N|**2.
 """
 
 from __future__ import annotations

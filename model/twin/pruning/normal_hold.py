@@ -12,7 +12,7 @@ import numpy as np
 from phong75.model.arrays import Flags, Ints
 
 
-def normal_hold(normal: Ints, two_sided: bool) -> tuple[Ints, Flags]:
+def normal_hold(normal: Ints, two_sided: bool | Flags) -> tuple[Ints, Flags]:
     """Held normals int64[3, n] and whether each pixel's own normal is held, bool[n].
 
     normal: int64[3, n] in `normal` (s1.30), consecutive pixels. Pixels before the first normal that
