@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Builds a bench with Verilator for cocotb, once per content. A bench is a Verilog top level in
 sim/frame/ or sim/module/.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a configuration is made of: the instances that Verilator elaborates."""
 
 from __future__ import annotations

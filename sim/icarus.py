@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The module benches in Icarus Verilog, whose registers hold X until something is written to them.
 
 Verilator knows 0 and 1 only. Here whatever depends on a register's contents at power-up comes out

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Frames on the builds of every feature, technique and method, with all that must come of them.
 
 A trial is what no module bench can be: the design as a whole in a configuration that is not the

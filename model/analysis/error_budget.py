@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The error budget: how far the hardware's S can be from eq. (3), derived stage by stage.
 
 Every bound follows from the formats, the tables' segments and the integers at the ports; nothing

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """How far pixels are from each other (in bits) and from the exact shading (in LSB)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The float64 reference: the paper's eq. (3), written from the paper, not from the hardware.
 
 It shares no arithmetic with the twin: no table, no rounding, no block, and cos(s) in the paper's

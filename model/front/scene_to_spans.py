@@ -147,7 +147,7 @@ def visible(triangles: Triangles, width: int, height: int):
     top = 0
     while top < height:
         room = np.count_nonzero(np.cumsum(strips[top:]) <= visibility.BLOCK_STRIPS)
-        lines = min(room, visibility.BLOCK_DOTS // width)
+        lines = min(room, visibility.BLOCK_PIXELS // width)
         bottom = min(top + max(lines, 1), height)
         here = np.flatnonzero((first < bottom) & (end > top))
         part = triangles.take(here)
@@ -155,14 +155,14 @@ def visible(triangles: Triangles, width: int, height: int):
             part, np.maximum(first[here], top), np.minimum(end[here], bottom), width
         )
         ends = (segments.left, segments.right - 1)
-        depth = [_at_dots(part, segments, x, part.depth[..., None])[:, 0] for x in ends]
+        depth = [_at_pixels(part, segments, x, part.depth[..., None])[:, 0] for x in ends]
         visible = visibility.resolve(segments, np.stack(depth, axis=-1), width)
         visible.triangle = here[visible.triangle]
         yield visible, bottom / height
         top = bottom
 
 
-def _at_dots(triangles: Triangles, segments: Segments, x, values, normalize_edges=False):
+def _at_pixels(triangles: Triangles, segments: Segments, x, values, normalize_edges=False):
     """float64[n, C]: `values` (float64[T, 3, C]) at the centre of dot `x` of each segment."""
     t = segments.triangle
     weights = scan_line_weights(
@@ -181,7 +181,7 @@ def _spans(triangles: Triangles, segments: Segments, config: Config, interpolati
     are sound even in slivers; a gradient over the triangle's plane would not be.
     """
     ends = [
-        _at_dots(triangles, segments, x, triangles.value, interpolation == "normalized_edges")
+        _at_pixels(triangles, segments, x, triangles.value, interpolation == "normalized_edges")
         for x in (segments.left, segments.right - 1)
     ]
     length = segments.right - segments.left

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The input with the largest error: a search for it, and the worst inputs found so far.
 
 The error of a code is the error of S before the final rounding and what that rounding adds, up to

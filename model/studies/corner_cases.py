@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Stiff and extreme cases: what is extreme, what must happen, and the frame that shows it.
 
 Every case must come out of the RTL as the model says, to the bit, whole, flagged where it has no

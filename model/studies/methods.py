@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The configurations of the precision sweep, and the frames that they are measured on.
 
 One curve a method: what the sweep varies along it is its `label`. Every configuration is built,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The paper's arguments against Gouraud's shading as numbers: Mach bands, flicker, orientation.
 
 - Mach bands: "whenever the slope of the light intensity curve changes, this effect appears"; so

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The surfaces behind meshes: which point the eye sees at a dot, and how the normal turns there.
 
 Sphere and torus are met by rays in closed form or as roots of a quartic, the Bezier patch by

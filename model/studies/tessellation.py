@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a mesh loses against the surface behind it, by shading technique, as it is refined.
 
 The measure is the shading of the true surface: eq. (3) with the exact normal of the point that the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Runs a proof and its broken designs with SymbiYosys; each in a folder of its own below build/."""
 
 from __future__ import annotations

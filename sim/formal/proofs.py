@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What is proven, at which size, and which broken design must fail it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """bitwuzla's command line, which its wheel does not bring: SMT-LIB from stdin, answers to stdout.
 
 SymbiYosys starts this as `bitwuzla --lang smt2`, and asks `--help` whether it knows that option.

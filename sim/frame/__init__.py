@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: MIT
 """Whole frames through the RTL."""

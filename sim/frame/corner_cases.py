@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The stability cases through the RTL: a row of the table for each, with all that went wrong."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The cocotb test of whole-frame runs: does the jobs that `sim.run_frame` left in a file."""
 
 from __future__ import annotations

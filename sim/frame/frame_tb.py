@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """cocotb testbench of sim/frame_bench.v: it owns clock, reset, registers and jobs."""
 
 from __future__ import annotations

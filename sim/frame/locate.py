@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Which stage a wrong pixel comes from: the stages of its modules, one by one, against the twin."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """One point of the precision sweep: built, simulated, compared with its twin, and measured.
 
 What is kept is what the simulator gave, named by the hash of the bench and of the stimulus: twin,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Whole frames through the RTL, from outside the simulator."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The bench of the small modules, generated: all of them side by side, vectors through files.
 
 Every instance sees the same three 64-bit input words a, b, c, a set of them every clock; the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """cocotb testbench pieces for AXI4-Stream: clock, reset, source, sink and scoreboard.
 
 Python is called twice a clock: inputs change at the falling edge, and everything is read when it

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """cocotb testbench of the generated module benches: vectors through files, compared by stage."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Benches of single datapath modules, generated: vectors in from a file, every stage out to a file.
 
 A `Unit` says what a bench holds. Its input words and its observed signals ("lanes") are 64 bits

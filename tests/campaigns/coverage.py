@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Line, branch and toggle coverage of rtl/ by module and frame tests and trials: `make coverage`.
 
 Lines and branches have to be covered, all of them, but for WAIVERS; toggles are reported. The

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Tests of the tests: `python -m tests.campaigns.mutation`, with --help for the options.
 
 Two kinds of mutants of rtl/, one change each. Constants: every number that is written by hand,

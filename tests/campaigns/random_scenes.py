@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Random scenes, each on the build that is pruned to it: `make prune-random SCENES=200`.
 
 Exit code: 0; 1 if a pixel, a count or the latency is not the full design's; 2 if the number is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The benches of the module tests: which top level, and which cocotb tests run on it."""
 
 from __future__ import annotations

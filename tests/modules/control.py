@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """cocotb tests of span_walker and pixel_fifo, through sim/control_bench.v.
 
 Run by tests/test_modules.py.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """cocotb tests of the datapath modules: directed, exhaustive where the input fits, random.
 
 Run by tests/test_modules.py, one module a simulation, through the generated benches.

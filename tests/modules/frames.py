@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Random frames for the tests of whole pipelines."""
 
 from __future__ import annotations

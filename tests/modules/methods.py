@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """cocotb tests of the modules of other methods (see model/sweep.py), as those of the datapath.
 
 Run by tests/test_modules.py in the default configuration, by tests/test_sweep.py in others.

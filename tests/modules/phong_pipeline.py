@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """cocotb tests of phong_pipeline, a clock at a time: streams, stalls, resets, illegal spans.
 
 Run by tests/test_modules.py, for every technique. Expected pixels come from the twin.

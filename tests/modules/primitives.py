@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """cocotb tests of the small modules: exhaustive where the input fits, random and corners beyond.
 
 Run by tests/test_modules.py in one simulation, through the bench of sim/primitives.py. A vector
