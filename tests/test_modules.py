@@ -12,11 +12,11 @@ import pytest
 from phong75.model.config import DEFAULT as C
 from phong75.model.config import TECHNIQUES
 from phong75.model.spans import illegal_spans
+from phong75.model.studies.random_frames import random_frame
 from phong75.model.twin import render
 from phong75.sim.build import Bench
 from phong75.sim.frame.run_frame import Job, simulate_jobs
 from tests.modules.benches import NAMES, ModuleBench, module_bench
-from tests.modules.frames import random_frame
 
 SEED = 75
 

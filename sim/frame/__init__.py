@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Whole frames through the RTL."""
+"""Simulation of whole frames: the RTL pipeline with span files in and pixel files out."""

@@ -40,7 +40,7 @@ from phong75.sim import build, design
 from phong75.sim.build import Bench, BuildError
 from phong75.sim.frame.run_frame import SimulationError
 from phong75.sim.module.units import MODULES
-from tests.configuration_tests import TRIALS, trial
+from tests.configuration_tests import CONFIGURATION_TESTS, configuration_test
 from tests.modules.benches import ModuleBench, module_bench
 
 EXPLAINED = Path(__file__).with_name("equivalent_mutants.txt")
@@ -90,7 +90,7 @@ BENCHES = {
     "inverse_sqrt_quadratic": ("parabolas_8", "inverse_sqrt_quadratic", "parabolas_32"),
     "latency": (
         "default", *_METHODS, "gouraud 3", "hold_unlit", "specular", "power_function", "single",
-        "single matte", "single cosine", "primitives", *MODULES, *TRIALS, "control",
+        "single matte", "single cosine", "primitives", *MODULES, *CONFIGURATION_TESTS, "control",
         "phong_pipeline", "gouraud", "flat",
     ),
     "leading_zeros": (*_SMALL, "width_10"),
@@ -331,8 +331,8 @@ def judge(name: str, rtl: Path) -> tuple[str, str]:
     signal.alarm(BENCH_SECONDS)
     made = ""
     try:
-        if name in TRIALS:
-            bench = trial(name).bench(rtl)
+        if name in CONFIGURATION_TESTS:
+            bench = configuration_test(name).bench(rtl)
         else:
             base, _, small = name.partition("/")
             about = module_bench(base, _MEMORIES if small in _MEMORIES else (small,) * bool(small))
@@ -340,8 +340,8 @@ def judge(name: str, rtl: Path) -> tuple[str, str]:
         made = build.digest(*bench.verilate())
         if made == _OWN.get(name):
             return made, ""
-        if name in TRIALS:
-            said = trial(name).complaint(bench)
+        if name in CONFIGURATION_TESTS:
+            said = configuration_test(name).failure(bench)
             return made, f"fails: {said}" if said else ""
         return made, _failing(about, bench, small)
     except BuildError:
@@ -481,8 +481,8 @@ def _know_the_design(used: list[str], jobs: int) -> str:
     """
     build.runtime()  # once, before all need it
     for name in used:
-        if name in TRIALS:
-            _ = trial(name).expected  # before the workers start, so that all have it
+        if name in CONFIGURATION_TESTS:
+            _ = configuration_test(name).expected  # before the workers start, so that all have it
     with _pool(jobs) as workers:
         found = workers.starmap(judge, [(name, design.RTL) for name in used], 1)
     for name, (made, why) in zip(used, found, strict=True):
