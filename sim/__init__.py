@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The simulation: benches, their cocotb testbench classes, and the build with Verilator."""
+"""Simulation: Verilog testbenches, cocotb testbench classes, proofs, and their builds."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The latencies that rtl/latency.vh states for a configuration, as Verilator elaborates them."""
+"""Latencies of a configuration: the macros of rtl/latency.vh, evaluated by Verilator."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MACRO = re.compile(r"^`define PHONG_(\w+)_LATENCY\b", re.MULTILINE)
 
 
 def latencies(config: Config = DEFAULT) -> dict[str, int]:
-    """{block: clocks} of every macro PHONG_<BLOCK>_LATENCY, in the order of the file.
+    """{block: cycles} of every macro PHONG_<BLOCK>_LATENCY, in the order of the file.
 
     Raises BuildError.
     """

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Proofs of the control and the interpolators with SymbiYosys; `make formal` runs them."""
+"""Formal proofs of flow control and interpolators with SymbiYosys; `make formal` runs them."""

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Single modules through the RTL."""
+"""Simulation of single modules: generated testbenches and cocotb testbench classes."""
