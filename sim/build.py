@@ -49,12 +49,24 @@ _RUNTIME = (
 COVERAGE = "PHONG_COVERAGE"
 
 
-#: Folders of the Verilog top levels.
-_BENCHES = (SIM / "frame", SIM / "module")
+#: Folders of the hand-written Verilog top levels.
+BENCH_FOLDERS = (SIM / "frame", SIM / "module")
 
 
-def _benches() -> list[Path]:
-    return [file for folder in _BENCHES for file in sorted(folder.glob("*.v"))]
+def bench_files() -> list[Path]:
+    """The hand-written Verilog top levels."""
+    return [file for folder in BENCH_FOLDERS for file in sorted(folder.glob("*.v"))]
+
+
+def top_file(top: str, rtl: Path | None = None) -> Path:
+    """The Verilog file of `top`, a testbench or a module of the design in `rtl`.
+
+    Raises BuildError if there is none.
+    """
+    for file in (*bench_files(), *design.sources(rtl)):
+        if file.stem == top:
+            return file
+    raise BuildError(f"no Verilog file of {top} in sim/ or in the design")
 
 
 class BuildError(Exception):
@@ -90,7 +102,7 @@ def digest(*parts: str | bytes | Path) -> str:
     return sha.hexdigest()[:16]
 
 
-def _replace(path: Path, text: str) -> None:
+def replace(path: Path, text: str) -> None:
     """Write `text` to `path` atomically; an unchanged file is not touched."""
     if path.is_file() and path.read_text() == text:
         return
@@ -101,7 +113,7 @@ def _replace(path: Path, text: str) -> None:
 
 
 @contextmanager
-def _alone(target: Path):
+def locked(target: Path):
     """Hold a file lock beside `target` while the body makes it.
 
     If several processes need the same target, one makes it and the others wait. The operating
@@ -117,7 +129,7 @@ def generate_header(config: Config = DEFAULT) -> Path:
     """Write phong_config.vh of `config` into a folder of its own; returns that include folder."""
     text = header(config)
     folder = BUILD / "config" / f"{config.name}-{digest(text)[:8]}"
-    _replace(folder / "phong_config.vh", text)
+    replace(folder / "phong_config.vh", text)
     return folder
 
 
@@ -126,7 +138,7 @@ def runtime() -> Path:
     sources = [_INCLUDE / f"{name}.cpp" for name in _RUNTIME]
     folder = SHARED / digest(CXX_FLAGS, *sources)
     library = folder / "libverilated.a"
-    with _alone(folder):
+    with locked(folder):
         if not library.is_file():
             _compile_runtime(sources, library)
     return library
@@ -160,9 +172,9 @@ def _first_header(options: list[str]) -> Path:
     """
     folder = SHARED / f"first-{digest(*options, _INCLUDE / 'verilated.h')}"
     header, compiled = folder / "first.h", folder / "first.h.gch"
-    with _alone(folder):
+    with locked(folder):
         if not compiled.is_file():
-            _replace(header, '#include "verilated.h"\n')
+            replace(header, '#include "verilated.h"\n')
             part = folder / f"{os.getpid()}.gch"
             run_tool(["g++", *options, "-x", "c++-header", header, "-o", part])
             part.replace(compiled)
@@ -212,7 +224,7 @@ class Bench(Verilator):
         files = [
             *design.sources(self._rtl),
             *design.headers(self._rtl),
-            *_benches(),
+            *bench_files(),
             SIM / "main.cpp",
         ]
         content = digest(
@@ -244,7 +256,7 @@ class Bench(Verilator):
             return self._written
         self.folder.mkdir(parents=True, exist_ok=True)
         for name, text in self._texts.items():
-            _replace(self.folder / name, text)
+            replace(self.folder / name, text)
         run_tool(
             [
                 _VERILATOR_ROOT / "bin" / "verilator", "--cc", "--vpi", "--prefix", "Vtop",
@@ -253,7 +265,8 @@ class Bench(Verilator):
                 "--output-split", "0", "--public-depth", "1", *self._verilator,
                 *(["--trace"] if self._trace else []),
                 *(["--coverage-line", "--coverage-toggle"] if self._coverage else []),
-                f"-I{self._include}", *(f"-I{f}" for f in (*design.folders(self._rtl), *_BENCHES)),
+                f"-I{self._include}",
+                *(f"-I{folder}" for folder in (*design.folders(self._rtl), *BENCH_FOLDERS)),
                 f"-I{self.folder}",
                 SIM / "lint.vlt", self._source(),
             ]
@@ -265,7 +278,7 @@ class Bench(Verilator):
         """Build the simulation program if necessary; returns its folder. Raises BuildError."""
         if not self.built:
             library = runtime()
-            with _alone(self.folder):
+            with locked(self.folder):
                 if not self.built:
                     self._make(library)
         return self.folder
@@ -303,7 +316,7 @@ class Bench(Verilator):
         """Compile the main program; returns the object file, shared by models with equal ports."""
         source, ports = SIM / "main.cpp", self.folder / "Vtop.h"
         target = SHARED / f"main-{digest(*options, source, ports)}.o"
-        with _alone(target):
+        with locked(target):
             if not target.is_file():
                 part = target.with_suffix(f".{os.getpid()}")
                 run_tool(["g++", *options, f"-I{self.folder}", "-c", source, "-o", part])
@@ -315,8 +328,7 @@ class Bench(Verilator):
         name = f"{self._top}.v"
         if name in self._texts:
             return self.folder / name
-        files = [*_benches(), *design.sources(self._rtl)]
-        return next(file for file in files if file.name == name)
+        return top_file(self._top, self._rtl)
 
     def run(self, test_module: str, folder: Path, **arguments) -> Path:
         """Build if necessary, then run the cocotb tests of `test_module`.

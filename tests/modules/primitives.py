@@ -149,9 +149,21 @@ async def rom(dut, name):
 
 
 @cocotb.test()
-@cocotb.parametrize(name=_of("ram") + _of("small_ram"))
-async def memory(dut, name):
-    """Random writes and reads at once; a read of the word being written gives the old one."""
+@cocotb.parametrize(name=_of("ram"))
+async def ram(dut, name):
+    """See `_memory`."""
+    await _memory(dut, name)
+
+
+@cocotb.test()
+@cocotb.parametrize(name=_of("small_ram"))
+async def small_ram(dut, name):
+    """See `_memory`."""
+    await _memory(dut, name)
+
+
+async def _memory(dut, name):
+    """Random writes and reads in the same cycles; a read of a word being written gives the old."""
     p = INSTANCES[name].parameters
     size, rng = 1 << p["ADDRESS_BITS"], np.random.default_rng(SEED)
     n = 2 * size + 4000
