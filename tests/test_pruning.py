@@ -31,7 +31,8 @@ from phong75.sim.frame.run_frame import Job, simulate_jobs
 from phong75.sim.latency import latencies
 from tests.configuration_tests import (
     ALONE,
-    Trial,
+    ConfigurationTest,
+    configuration_test,
     dull,
     grey,
     misfits,
@@ -40,9 +41,8 @@ from tests.configuration_tests import (
     one_diffuse,
     one_sided,
     plain,
+    random_configuration_test,
     random_scene,
-    random_trial,
-    trial,
 )
 
 SEED = 1975
@@ -133,15 +133,15 @@ def test_digits_of_constants():
 def test_bundled_scene(scene):
     frame = front_end(load_scene(scene, SIZE)).frame
     jobs = Job(frame), Job(frame, idle=64, stall=100, seed=SEED)
-    found = Trial(pruning.prune(frame)[0], *jobs, full=C)
-    assert found.model_complaint() == found.complaint() == ""
+    test = ConfigurationTest(pruning.prune(frame)[0], *jobs, full=C)
+    assert test.model_failure() == test.failure() == ""
 
 
 @pytest.mark.parametrize("seed", range(KEPT))
 def test_random_scene(seed):
     """More of them: `make prune-random`."""
-    found = random_trial(SEED + seed)
-    assert found.model_complaint() == found.complaint() == ""
+    test = random_configuration_test(SEED + seed)
+    assert test.model_failure() == test.failure() == ""
 
 
 @pytest.mark.parametrize("method", [
@@ -225,13 +225,13 @@ def test_what_does_not_fit_is_flagged():
 
 
 def test_spans_and_writes_that_do_not_fit_are_known():
-    """What the trials of tests/test_trials.py count in the RTL is there to be counted."""
+    """The configuration tests contain spans and writes that the builds do not support."""
     fit, config = narrow()
     assert not span_guard(fit.spans, config).any()
     bad = span_guard(misfits(fit, SEED).spans, config)
     assert 20 < bad.sum() < len(bad)
     for name in ("specular", "constant_exponent", "two_sided", "channels"):
-        build = trial(name)
+        build = configuration_test(name)
         words = build.jobs[-1].writes
         flagged = sum(unsupported_write(*word, build.config) for word in words)
         assert 0 < flagged < len(words) - 100, name

@@ -152,7 +152,7 @@ def test_normalized_edges_are_refused():
     [
         ("intensity_code", "1'b1 << INTENSITY_FRACTION", "0", "stage intensity_code.clamp"),
         ("gouraud_unit", ".step(values[(CHANNELS+c)", ".step(values[(2*CHANNELS-1-c)",
-         "intensity_code agree with the twin on what is interpolated here"),
+         "intensity_code agree with the twin for this pixel's interpolated vector"),
     ],
 )  # fmt: skip
 def test_a_broken_design_fails_and_is_located(tmp_path, module, old, new, says):

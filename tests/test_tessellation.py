@@ -149,7 +149,7 @@ def test_mach_bands_vanish_where_the_edge_is_none():
     counted = np.ones(80 * 80, bool)
     config = TECHNIQUES["gouraud"]
     black = shading_artifacts.mach_bands(front_end(scene, config), "gouraud", counted)
-    # From 0 to 1/2 over the square's half diagonal, 80/2.2 dots.
+    # From 0 to 1/2 over the square's half diagonal, 80/2.2 pixels.
     want = 255 * 0.5 * 2.2 / 80 * np.sin(np.radians(10))
     assert black["slope_mean"] == pytest.approx(want, rel=0.01)
     scene.objects[0].mesh.normals[:] = (0.0, 0.6, 0.8)

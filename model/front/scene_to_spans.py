@@ -188,7 +188,7 @@ def visible(triangles: Triangles, width: int, height: int) -> Iterator[tuple[Seg
     top = 0
     while top < height:
         room = int(np.count_nonzero(np.cumsum(strips[top:]) <= visibility.BLOCK_STRIPS))
-        lines = min(room, visibility.BLOCK_DOTS // width)
+        lines = min(room, visibility.BLOCK_PIXELS // width)
         bottom = min(top + max(lines, 1), height)
         here = np.flatnonzero((first < bottom) & (end > top))
         part = triangles.take(here)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Charts of the sweeps: error over time and over hardware, against true surfaces, artefacts."""
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
-"""Line, branch and toggle coverage of rtl/ by module and frame tests and trials: `make coverage`.
+# SPDX-License-Identifier: MIT
+"""Line, branch and toggle coverage of rtl/ by module, frame and configuration tests.
 
 Lines and branches have to be covered, all of them, but for WAIVERS; toggles are reported. The
 numbers go to build/coverage.json. Exit code: 1 if something is not covered, or a test fails.
@@ -8,11 +9,9 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import shutil
 import subprocess
 import sys
-from collections import defaultdict
 from pathlib import Path
 
 from rich.console import Console
@@ -21,9 +20,10 @@ from rich.table import Table
 from phong75.scripts import recorded
 from phong75.scripts.recorded import Row
 from phong75.sim import design
+from phong75.sim.coverage import points
 from phong75.sim.design import BUILD
 
-TESTS = ("tests/test_modules.py", "tests/test_frames.py", "tests/test_trials.py")
+TESTS = ("tests/test_modules.py", "tests/test_frames.py", "tests/test_configurations.py")
 
 #: (file, text of the line, reason): lines that no test can reach.
 _ELABORATED = "a function of constants: it runs when the design is elaborated, not in simulation"
@@ -35,23 +35,6 @@ WAIVERS: tuple[tuple[str, str, str], ...] = (
         _ELABORATED,
     ),
 )
-
-_POINT = re.compile(r"^C '(.*)' (\d+)$")
-
-
-def points(folder: Path) -> dict[tuple, int]:
-    """{(kind, file, line, what): count} of all coverage points in rtl/, over all runs."""
-    counts: dict[tuple, int] = defaultdict(int)
-    for file in sorted(folder.glob("*.dat")):
-        for line in file.read_text().splitlines():
-            if not (match := _POINT.match(line)):
-                continue
-            keys = dict(part.split("\2", 1) for part in match[1].split("\1") if "\2" in part)
-            if Path(keys["f"]).parent.name == "rtl":
-                kind = keys["page"].split("/")[0].removeprefix("v_")
-                name = Path(keys["f"]).name
-                counts[kind, name, int(keys["l"]), keys["n"] + keys["o"]] += int(match[2])
-    return counts
 
 
 def waived(name: str, line: int) -> bool:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The module tests once more, in Icarus Verilog with its four states: `make icarus`.
 
 Arguments: names of benches (see sim/benches.py), else all. Exit code: 0; 1 if a test fails; 2 if

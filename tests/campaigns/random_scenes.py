@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Random scenes, each on the build that is pruned to it: `make prune-random SCENES=200`.
 
 Exit code: 0; 1 if a pixel, a count or the latency is not the full design's; 2 if the number is
@@ -18,18 +19,18 @@ from phong75.scripts import recorded
 from phong75.scripts.recorded import Row
 from phong75.sim.build import BuildError, runtime
 from phong75.sim.frame.run_frame import SimulationError
-from tests.configuration_tests import SEED, random_trial
+from tests.configuration_tests import SEED, random_configuration_test
 
 MOST = 100_000
 
 
 def attempt(seed: int) -> tuple[str, int, tuple]:
     """What is wrong with random scene `seed` ("": nothing), its pixels, the features left out."""
-    found = random_trial(seed)
+    found = random_configuration_test(seed)
     bench = found.bench()
     frame = found.jobs[0].frame
     try:
-        said = found.model_complaint() or found.complaint(bench)
+        said = found.model_failure() or found.failure(bench)
     except (BuildError, SimulationError) as error:
         said = str(error).splitlines()[0]
     shutil.rmtree(bench.folder, ignore_errors=True)  # nobody will run this build again
