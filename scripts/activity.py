@@ -26,9 +26,9 @@ from phong75.scripts import recorded
 from phong75.scripts.recorded import Row
 from phong75.sim import design
 from phong75.sim.build import Bench
+from phong75.sim.coverage import points
 from phong75.sim.design import BUILD
 from phong75.sim.frame.run_frame import Job, simulate_jobs
-from tests.campaigns.coverage import points
 
 
 def registers() -> dict[str, set[str]]:
