@@ -120,7 +120,7 @@ class SceneObject:
     material: int
 
 
-@dataclass
+@dataclass(repr=False)
 class Scene:
     """A checked scene, ready for the front end.
 
@@ -139,6 +139,13 @@ class Scene:
     interpolation: str
     objects: list[SceneObject]
     materials: list[Material] = field(default_factory=lambda: [Material()])
+
+    def __repr__(self) -> str:
+        triangles = sum(len(item.mesh.faces) for item in self.objects)
+        return (
+            f"Scene({self.name}, {self.width}x{self.height}, objects: {len(self.objects)}, "
+            f"triangles: {triangles}, materials: {len(self.materials)})"
+        )
 
 
 def bundled_scenes() -> list[str]:

@@ -27,7 +27,7 @@ class SimulationError(Exception):
     """The simulation failed; the message contains the end of its log."""
 
 
-@dataclass
+@dataclass(repr=False)
 class SimResult:
     """Result of one simulated frame; sim/frame/frame_bench.v counts the cycles.
 
@@ -53,6 +53,9 @@ class SimResult:
     simulate_s: float
     zero_normals: int = 0
     unsupported: int = 0
+
+    def __repr__(self) -> str:
+        return f"SimResult({self.pixels}, cycles: {self.cycles}, complete: {self.complete})"
 
 
 @dataclass

@@ -13,8 +13,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from phong75.model.config import DEFAULT as C
-from phong75.model.config import levels
 from phong75.model.registers import address_bits, word_bits
+from phong75.model.twin.pruning.constant_multiplier import levels
 from phong75.sim.module.vector_bench import THIN, VectorTB, bench_text, known, write
 
 TOP = "primitives_bench"

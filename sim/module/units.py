@@ -53,7 +53,6 @@ class Module:
     held: (port, width) of input ports that cocotb holds; width is a number or Verilog expression.
     children: instances whose stages are observed before those of the module.
     late: {input port: Verilog expression}: cycles by which the port's data must arrive later.
-    tests: file of tests/modules/ with the module's tests.
     """
 
     inputs: tuple[str, ...]
@@ -61,7 +60,6 @@ class Module:
     held: tuple[tuple[str, int | str], ...] = ()
     children: tuple[Child, ...] = ()
     late: dict[str, str] = field(default_factory=dict)
-    tests: str = "datapath"
 
 
 L = "`PHONG_{}_LATENCY"
@@ -117,7 +115,6 @@ MODULES = {
             Stage("inverse_sqrt_quadratic.refine", ("line_p9",), _sum(1, ROM, MUL, 1, MUL, 1)),
             Stage("inverse_sqrt_quadratic.round", ("root",), L.format("INVERSE_SQRT_QUADRATIC")),
         ),
-        tests="methods",
     ),
     "newton_step": Module(
         ("x", "y"),
@@ -126,7 +123,6 @@ MODULES = {
             Stage("newton_step.error", ("+error_p7",), _sum(MUL, ROUND, MUL, 1)),
             Stage("newton_step.better", ("better",), L.format("NEWTON_STEP")),
         ),
-        tests="methods",
     ),
     "inverse_sqrt_iterated": Module(
         ("operand",),
@@ -136,7 +132,6 @@ MODULES = {
                 "inverse_sqrt_iterated.steps", ("root",), L.format("INVERSE_SQRT_ITERATED")
             ),
         ),
-        tests="methods",
     ),
     "unnormalized": Module(
         ("x", "y", "z"),
@@ -148,7 +143,6 @@ MODULES = {
             Stage("unnormalized.lit", ("lit",), L.format("UNNORMALIZED")),
         ),
         held=(("two_sided", 1),),
-        tests="methods",
     ),
     "normalizer": Module(
         ("x", "y", "z"),
@@ -229,7 +223,6 @@ MODULES = {
             Stage("specular_power_squaring.last", ("power",), L.format("SPECULAR_POWER_SQUARING")),
         ),
         late={"exponent": _sum(L.format("SPECULAR_COSINE"), -1)},
-        tests="methods",
     ),
     "specular_power_schlick": Module(
         ("versine", "exponent"),
@@ -244,12 +237,10 @@ MODULES = {
                 "specular_power_schlick.quotient", ("power",), L.format("SPECULAR_POWER_SCHLICK")
             ),
         ),
-        tests="methods",
     ),
     "quadratic_interpolator": Module(
         ("advance", "load", "start", "first", "second"),
         (Stage("quadratic_interpolator", ("+value",), "1"),),
-        tests="methods",
     ),
     "quadratic_normalizer": Module(
         ("z", "square", "cross_square"),
@@ -270,7 +261,6 @@ MODULES = {
             ),
         ),
         held=(("two_sided", 1),),
-        tests="methods",
     ),
     "specular_weight": Module(
         ("cosine", "material"),
@@ -286,11 +276,11 @@ MODULES = {
         ("unit_x", "unit_y", "unit_z", "cosine", "lit", "material"),
         (
             Stage(
-                "shading_unit.intensity",
+                "colour_channel.intensity",
                 tuple(f"gen_channel[{c}].u_channel.intensity_p5" for c in range(3)),
                 _sum(L.format("SHADING_UNIT"), -2),
             ),
-            Stage("shading_unit.code", ("red", "green", "blue"), L.format("SHADING_UNIT")),
+            Stage("colour_channel.code", ("red", "green", "blue"), L.format("SHADING_UNIT")),
         ),
         held=(
             ("half_x", "`PHONG_HALF_VECTOR_BITS"), ("half_z", "`PHONG_HALF_VECTOR_BITS"),
