@@ -53,7 +53,7 @@ def test_shared_edges():
 
 
 def test_shared_edges_are_seen_to_break(monkeypatch):
-    """With another rule for dots on an edge, or inexact crossings, dots are missing or double."""
+    """With another rule for edges, or inexact crossings, pixels are missing or drawn twice."""
     exact = visibility._crossing
 
     def other_rule(xa, ya, xb, yb, y):

@@ -265,7 +265,7 @@ def test_the_readme_shows_the_last_measurement_of_these_builds():
 
 
 def test_the_bars():
-    """DSP multipliers: 8 for diffuse colour, 6 for grey, none for the older techniques, and for
+    """DSP multipliers: 8 for diffuse colour, 6 for grey, none for Gouraud and flat shading, and for
     the teapot a quarter fewer than in the full design; measured, and as it is elaborated. No
     pruned build simulates slower than the full one."""
     rows = {found["name"]: found for found in recorded.load("prune")["table"]}

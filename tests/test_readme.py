@@ -34,8 +34,8 @@ def test_latencies():
         assert f"{block} ({of[block]})" in README, block
     assert f"colour_channel ×3 ({of['colour_channel']})" in README
     assert f"the first comes {of['pixel'] + 3} clocks after its span" in README
-    for older in ("gouraud", "flat"):
-        pixel = latencies(TECHNIQUES[older])["pixel"]
+    for technique in ("gouraud", "flat"):
+        pixel = latencies(TECHNIQUES[technique])["pixel"]
         assert f"the first pixel {pixel + 3} clocks after its span" in " ".join(README.split())
 
 

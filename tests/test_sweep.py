@@ -16,7 +16,7 @@ from phong75.model.front.scene import load_scene
 from phong75.model.quadratic_spans import MARGIN_BITS, coefficients
 from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import read_spans, write_spans
-from phong75.model.studies import charts
+from phong75.model.studies import charts, pareto
 from phong75.model.studies.methods import CONFIGS, of_width, points
 from phong75.model.twin.methods.quadratic_interpolator import quadratic_interpolator
 from phong75.model.verilog import header
@@ -137,8 +137,11 @@ def test_where_no_bound_is_derived_there_is_none():
 
 
 def test_pareto():
-    cost, error = [1, 2, 3, 3, 4, 1], [9, 5, 6, 2, 2, 9]
-    assert charts.pareto(cost, error) == [True, True, False, True, False, True]
+    points = [(1, 9), (2, 5), (3, 6), (3, 2), (4, 2), (1, 9)]
+    assert pareto.on_front(points) == [True, True, False, True, False, True]
+    assert pareto.front(points) == [(1, 9), (2, 5), (3, 2)]
+    assert pareto.on_front([(1, 2, 3), (1, 2, 4), (0, 9, 9)]) == [True, False, True]
+    assert pareto.on_front([]) == pareto.front([]) == []
 
 
 def _rows():

@@ -212,6 +212,7 @@ def quadratic_versine(v, config: Config, square: float):
     """Error of the versine v = 2 |N x h|**2/|N|**2 (float array, 0 to 1) by `quadratic_spans`.
 
     square: see `squares`. The terms, for q = v/2:
+
     - the quotient of the squares: relative, the margin and the error of |N|**2; absolute, the error
       of |N x h|**2;
     - the reciprocal of |N|**2: twice the error of the root, and half a unit relative to 1/4;
@@ -264,6 +265,7 @@ def specular_power_tables(n: float, config: Config) -> float:
     """Error of `specular_power_tables` against (1 - v)**n of its operands.
 
     With x = n * -log2(cos s), an error dx changes the power by at most 2**-x ln 2 dx. The terms:
+
     - logarithm: chords (not moved, because the first one must not go below 0), half a unit of value
       and of slope, the truncated product;
     - mantissa of the logarithm: truncated to `log_mantissa_bits`, a relative error of x, and

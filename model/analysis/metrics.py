@@ -75,6 +75,7 @@ def error_metrics(codes, exact) -> dict:
 
     `exact` is not rounded, so that perfect codes have errors of up to 1/2 LSB. Pass only shaded
     pixels, no background. The keys of the result:
+
     - max_lsb, mean_lsb, rms_lsb: maximum, mean and RMS of the error's magnitude, LSB.
     - p999_lsb: 99.9 % quantile: that many channel values have at most this error, LSB.
     - correctly_rounded: fraction of the channel values that equal `rounded(exact)`.

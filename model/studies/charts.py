@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib
@@ -11,6 +11,8 @@ import matplotlib.ticker
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+
+from phong75.model.studies import pareto
 
 #: RMS error of perfect rounding to codes.
 PERFECT_RMS = 12**-0.5
@@ -20,16 +22,6 @@ _STYLE = {
     "axes.titlesize": 9, "legend.fontsize": 7, "lines.markersize": 4,
 }  # fmt: skip
 _MARKERS = "osD^v<>PXp*hdH8"
-
-
-def pareto(cost: Sequence[float], error: Sequence[float]) -> list[bool]:
-    """Which points are not beaten: no other has at most their cost and at most their error, and
-    less of one of them."""
-    points = list(zip(cost, error, strict=True))
-    return [
-        not any(c <= cost and e <= error and (c, e) != (cost, error) for c, e in points)
-        for cost, error in points
-    ]
 
 
 def wrong_share(row: dict) -> float:
@@ -56,9 +48,8 @@ def _curves(axes: Axes, rows: list[dict], x: Callable, y: Callable, hollow: list
             [x(row) for row in hollow], [y(row) for row in hollow], marker=".", linestyle="none",
             color="white", markersize=4, markeredgewidth=0, zorder=6,
         )  # fmt: skip
-    front = pareto([x(row) for row in rows], [y(row) for row in rows])
-    ends = sorted((x(row), y(row)) for row, on in zip(rows, front, strict=True) if on)
-    axes.step(*zip(*ends, strict=True), where="post", color="black", linewidth=2.5, alpha=0.25,
+    front = pareto.front([(x(row), y(row)) for row in rows])
+    axes.step(*zip(*front, strict=True), where="post", color="black", linewidth=2.5, alpha=0.25,
               marker="o", markersize=12, zorder=1, label="Pareto front")  # fmt: skip
     axes.set_xscale("log")
     axes.set_yscale("log")

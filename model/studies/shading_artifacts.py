@@ -116,6 +116,7 @@ def flicker(frames: list[Frame], pixels: list) -> dict:
 
     pixels: the `Pixels` of each of `frames`. The rotating surface is symmetric, so that perfect
     shading gives 0. Returns a dict:
+
     - pixels: number of pixels that all frames cover.
     - change_rms, change_mean, change_max: change of the codes from one frame to the next, LSB.
     - pixels_that_change_more_than_1: fraction of the pixels that ever change by more than 1 LSB.

@@ -33,6 +33,7 @@ from phong75.model.config import TECHNIQUES
 from phong75.model.frame import InputError
 from phong75.model.front.scene import bundled_scenes
 from phong75.model.spans import read_spans
+from phong75.model.studies import pareto
 from phong75.scripts import recorded
 from phong75.scripts import run as run_scene
 from phong75.scripts.scene_results import SCHEMA as RESULTS
@@ -251,16 +252,6 @@ def budget_plot(results: dict, scenes: list[str]) -> dict:
     )  # fmt: skip
 
 
-def pareto(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """The points (cost, error) that no other beats, by cost."""
-    front, least = [], np.inf
-    for cost, error in sorted(set(points)):
-        if error < least:
-            front.append((cost, error))
-            least = error
-    return front
-
-
 def _error(row: dict, name: str) -> float | None:
     """A positive error of a row, for a logarithmic axis: none wrong counts as a third of one."""
     if name != "wrong":
@@ -312,7 +303,7 @@ def precision_plots(rows: list[dict]) -> dict[str, dict]:
             at = [(row, x, y) for row, x, y in at if x and y]
             if not at:
                 continue
-            front = pareto([(x, y) for _, x, y in at])
+            front = pareto.front([(x, y) for _, x, y in at])
             traces = [
                 go.Scatter(
                     name="Pareto front", x=[x for x, _ in front], y=[y for _, y in front],

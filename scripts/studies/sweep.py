@@ -26,7 +26,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from phong75.model.config import Config
 from phong75.model.frame import InputError
-from phong75.model.studies.charts import cost_chart, pareto, time_chart
+from phong75.model.studies import pareto
+from phong75.model.studies.charts import cost_chart, time_chart
 from phong75.model.studies.methods import CONFIGS, Point, points
 from phong75.scripts import recorded
 from phong75.scripts.synthesis import clocks, ecp5
@@ -180,10 +181,11 @@ def front(rows: list[dict]) -> str:
     Errors to a thousandth of an LSB: what is less cannot be seen, and would make half of them part
     of the front.
     """
-    error = [round(found["rms_lsb"], 3) for found in rows]
-    on = pareto([found["frame_us"] for found in rows], error)
+    points = [(found["frame_us"], round(found["rms_lsb"], 3)) for found in rows]
     shown = sorted(
-        (f["frame_us"], f["name"], e) for f, e, k in zip(rows, error, on, strict=True) if k
+        (time, found["name"], error)
+        for found, (time, error), on in zip(rows, points, pareto.on_front(points), strict=True)
+        if on
     )
     return ", ".join(f"{name} ({time:.0f} µs, {e:.3f} LSB)" for time, name, e in shown)
 
@@ -206,16 +208,13 @@ def write_csv(rows: list[dict], path: Path) -> None:
 
 def finish(rows: list[dict], folder: Path = FOLDER) -> None:
     """Mark the Pareto fronts in `rows`, and write CSV and charts into `folder`."""
-    error = [found["rms_lsb"] for found in rows]
-    front = pareto([found["frame_us"] for found in rows], error)
-    sized = [found for found in rows if found["dsp"] is not None]
-    # By hardware a point counts that no other beats in multipliers, logic and error together.
-    keys = [(found["dsp"], found["lut"], found["rms_lsb"]) for found in sized]
+    front = pareto.on_front([(found["frame_us"], found["rms_lsb"]) for found in rows])
     for found, on in zip(rows, front, strict=True):
         found["pareto"], found["pareto_hardware"] = int(on), None
-    for found, key in zip(sized, keys, strict=True):
-        beaten = any(k != key and all(a <= b for a, b in zip(k, key, strict=True)) for k in keys)
-        found["pareto_hardware"] = int(not beaten)
+    sized = [found for found in rows if found["dsp"] is not None]
+    front = pareto.on_front([(found["dsp"], found["lut"], found["rms_lsb"]) for found in sized])
+    for found, on in zip(sized, front, strict=True):
+        found["pareto_hardware"] = int(on)
     folder.mkdir(parents=True, exist_ok=True)
     write_csv(rows, folder / "precision.csv")
     time_chart(rows, folder / "precision_time")

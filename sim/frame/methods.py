@@ -85,6 +85,7 @@ def measure(point: Point, frames=FRAMES, folder: Path = FOLDER) -> dict:
     """Measure `point` on `frames` (see `model.studies.methods.FRAMES`), all pixels together.
 
     Returns the result as a dict, which is also written to `folder`/<name>.json:
+
     - mismatches: number of pixels in which RTL and twin differ.
     - the errors of `metrics.error_metrics`, LSB: the RTL's codes against the float64 shading of the
       scene before any rounding. So the rounding at the ports of a configuration counts, too.

@@ -53,7 +53,6 @@ class Module:
     held: (port, width) of input ports that cocotb holds; width is a number or Verilog expression.
     children: instances whose stages are observed before those of the module.
     late: {input port: Verilog expression}: cycles by which the port's data must arrive later.
-    tests: file of tests/modules/ with the module's tests.
     """
 
     inputs: tuple[str, ...]

@@ -147,11 +147,6 @@ def test_what_is_missing_names_its_command(tmp_path):
         assert f"run <code>{command}" in html, command
 
 
-def test_the_pareto_front():
-    points = [(1, 5), (2, 3), (2, 4), (3, 3), (4, 1), (1, 6)]
-    assert report.pareto(points) == [(1, 5), (2, 3), (4, 1)]
-
-
 def test_the_clock_is_named():
     rows = [point("a", str(k), 1000, 1.0) for k in range(3)]
     shown = report.precision_plots(rows)["frame_us/rms_lsb"]["data"][1]["marker"]["symbol"]
