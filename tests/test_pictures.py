@@ -95,6 +95,16 @@ def test_errors_above_the_bound_stand_out(tmp_path, frame):
     assert np.abs(magnitude[0, 0] - small[0, 0]).max() < 12  # 0.3 of 9 LSB, and as much of 1/2
 
 
+def test_without_a_bound_the_scales_reach_to_the_largest_error(tmp_path, frame, monkeypatch):
+    lines = []
+    monkeypatch.setattr(pictures._Sheet, "write", lambda self, *text: lines.extend(text))
+    magnitude, beyond = draw(tmp_path / "map", frame, 0.3, 0.6, 9.0, bound=None)
+    assert not (magnitude[0] == ORANGE).all(axis=-1).any()
+    assert not (beyond[0] == BLUE).all(axis=-1).any()
+    assert np.ptp(beyond[0, 2]) > 90 and (beyond[0, 0] == GREY).all()
+    assert "9.0000 LSB, no bound derived; pixels" in lines[1]
+
+
 def test_the_scale_of_good_runs_is_the_same(tmp_path, frame):
     one, _ = draw(tmp_path / "one", frame, 0.3, 0.4)
     two, _ = draw(tmp_path / "two", frame, 0.3, 0.79)

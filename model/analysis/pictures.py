@@ -61,7 +61,7 @@ def excess(error: np.ndarray) -> np.ndarray:
 
 
 def write_error_map(
-    path: str | Path, frame: Frame, x, y, error, bound: float, *, name: str = ""
+    path: str | Path, frame: Frame, x, y, error, bound: float | None, *, name: str = ""
 ) -> None:
     """Write a PNG with two maps of `error` (float64[n, 3], LSB) at `x`, `y` (int[n]).
 
@@ -72,56 +72,59 @@ def write_error_map(
     shows the worst of its three channels. Pixels without a span are white.
 
     Pixels above 1/2 are few, so the second map draws them enlarged; where they overlap, the larger
-    error is shown. name: scene and technique, for the title. Raises OSError.
+    error is shown. bound: None if no bound is derived; both scales then reach to the largest error.
+    name: scene and technique, for the title. Raises OSError.
     """
     # matplotlib takes long to import, and only this picture uses it.
     from matplotlib.colors import LogNorm
 
     beyond = excess(error)
     worst = float(beyond.max(initial=-PERFECT_LSB)) + PERFECT_LSB
-    above, broken = int((beyond > 0).sum()), int((beyond > bound - PERFECT_LSB).sum())
+    limit = np.inf if bound is None else bound - PERFECT_LSB
+    above, broken = int((beyond > 0).sum()), int((beyond > limit).sum())
+    to_worst = broken > 0 or (bound is None and worst > PERFECT_LSB)
     sheet = _Sheet(frame.width, frame.height)
 
     shape = (frame.height, frame.width)
     magnitude = _place(np.full(shape, np.nan), x, y, beyond + PERFECT_LSB)
     key = [(_BACKGROUND, "no span")]
-    if not broken:
+    if not to_worst:
         key.append((_ABOVE, "more than ½ LSB"))
     sheet.draw(
         0, magnitude, "|error| = |code − 255 S|, worst of three channels", key,
-        cmap=_colours("viridis", over=None if broken else _ABOVE),
-        vmin=0, vmax=worst if broken else PERFECT_LSB,
+        cmap=_colours("viridis", over=None if to_worst else _ABOVE),
+        vmin=0, vmax=worst if to_worst else PERFECT_LSB,
     ).set_label("LSB", fontsize=8)  # fmt: skip
 
     side = 1 + 2 * round(2 * max(1, max(shape) / _NOMINAL)) if max(shape) >= _PANEL else 1
     milli = 1000 * _grow(_place(np.full(shape, -np.inf), x, y, beyond), side)
-    limit = 1000 * (bound - PERFECT_LSB)
-    top = max(limit, 10 * _LEAST_MILLI)
+    top = max(1000 * (worst - PERFECT_LSB if bound is None else limit), 10 * _LEAST_MILLI)
     # The value beyond the scale stands for all errors above the bound.
-    shown = np.where(milli > limit, 2 * top, np.maximum(milli, _LEAST_MILLI))
+    shown = np.where(milli > 1000 * limit, 2 * top, np.maximum(milli, _LEAST_MILLI))
+    key = [(_BACKGROUND, "no span"), (_PERFECT, "at most ½ LSB")]
+    if bound is not None:
+        key.append((_BROKEN, f"more than the bound; pixels: {_count(broken)}"))
+    enlarged = f", each drawn {side} × {side}" if side > 1 else ""
     bar = sheet.draw(
         1, np.where(milli > 0, shown, np.nan),
         "|error| − ½ LSB, what exceeds perfect rounding; "
-        f"pixels: {_count(above)}",
-        [
-            (_BACKGROUND, "no span"), (_PERFECT, "at most ½ LSB"),
-            (_BROKEN, f"more than the bound; pixels: {_count(broken)}"),
-        ],
-        cmap=_colours("YlOrRd", start=0.4, over=_BROKEN),
+        f"pixels: {_count(above)}{enlarged}", key,
+        cmap=_colours("YlOrRd", start=0.4, over=None if bound is None else _BROKEN),
         norm=LogNorm(_LEAST_MILLI, top), behind=~np.isnan(magnitude),
     )  # fmt: skip
     decades = [10.0**k for k in range(6) if 10.0**k < top / 1.8]
     labels = [f"≤ {_LEAST_MILLI}", *(f"{d:g}" for d in decades), f"{top:.3g}"]
     bar.set_ticks([_LEAST_MILLI, *decades, top], labels=labels)
     bar.ax.minorticks_off()
-    enlarged = f"; each pixel drawn {side} × {side}" if side > 1 else ""
-    bar.set_label(f"1/1000 LSB, up to bound − ½{enlarged}", fontsize=8)
+    end = "the largest error" if bound is None else "bound"
+    bar.set_label(f"1/1000 LSB, up to {end} − ½", fontsize=8)
 
     size = f"{frame.width} × {frame.height}"
     parts = [name, size, f"{_count(len(beyond))} pixels shaded"]
+    derived = "no bound derived" if bound is None else f"derived bound {bound:.4f} LSB"
     sheet.write(
         ", ".join(part for part in parts if part),
-        f"largest error {worst:.4f} LSB, derived bound {bound:.4f} LSB; "
+        f"largest error {worst:.4f} LSB, {derived}; "
         f"pixels above the ½ LSB of perfect rounding: {_count(above)}",
     )
     sheet.figure.savefig(path, format="png", metadata={"Software": None})
