@@ -15,6 +15,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from phong75.model.studies.tessellation import SIZE
+
 #: RMS error of perfect rounding to codes, in LSB: that of an error spread evenly over ±1/2.
 PERFECT_RMS = 12**-0.5
 
@@ -189,12 +191,14 @@ def tessellation_chart(rows: list[dict], path: Path) -> None:
     )
     with matplotlib.rc_context(_STYLE):
         figure = Figure(figsize=(3.6 * len(shapes) + 0.8, 8.6), layout="constrained")
-        grid = figure.subplots(len(lines), len(shapes), squeeze=False, sharey=True, sharex="col")
+        grid = figure.subplots(len(lines), len(shapes), squeeze=False, sharey="row", sharex="col")
         for line, (error, name, shown) in enumerate(lines):
             for column, shape in enumerate(shapes):
                 axes = grid[line][column]
                 for k, technique in enumerate(techniques):
                     curve = [r for r in shown if (r["shape"], r["technique"]) == (shape, technique)]
+                    if not curve:
+                        continue
                     axes.plot(
                         [r["triangles"] for r in curve], [r[error] for r in curve],
                         marker=_MARKERS[k], color=_colour(k), linewidth=1,
@@ -207,7 +211,7 @@ def tessellation_chart(rows: list[dict], path: Path) -> None:
                 if line == len(lines) - 1:
                     axes.axhline(PERFECT_RMS, color="gray", linewidth=0.8, linestyle=":")
                     axes.annotate(
-                        "perfect rounding", (0, PERFECT_RMS), xytext=(2, -2), va="top",
+                        "perfect rounding", (0, PERFECT_RMS), xytext=(2, 2),
                         textcoords="offset points", fontsize=6, color="gray",
                         xycoords=("axes fraction", "data"),
                     )  # fmt: skip
@@ -225,9 +229,9 @@ def tessellation_chart(rows: list[dict], path: Path) -> None:
             )  # fmt: skip
         figure.legend(*grid[0][0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
         figure.suptitle(
-            "Error against the true surface, on the pixels that mesh and surface both cover",
-            fontsize=9,
-        )
+            "Error against the true surface at {} × {}, on the pixels that mesh and surface both "
+            "cover".format(*SIZE), fontsize=9,
+        )  # fmt: skip
         _save(figure, path)
 
 
