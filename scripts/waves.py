@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """A waveform of a short run with one module's signals grouped for GTKWave: `make waves MODULE=`.
 
-The whole pipeline runs a picture of 64 x 32 pixels, whose spans have up to 26 pixels. Writes build/waves/<module>.fst and .gtkw. The
-waveform has every signal of the design, and spans and pixels split into fields. The save file shows
-flow control, the fields, the ports of each instance of the module, then the signals of its stages;
-its view starts at the first pixel. Exit code: 0; 2 if there is no such module.
+The whole pipeline runs a picture of 64 x 32 pixels, whose spans have up to 27 pixels. Writes
+build/waves/<module>.fst and .gtkw. The waveform has every signal of the design, and the fields of
+spans and pixels. The save file shows flow control, the fields, the ports of each instance of the
+module, then the signals of its stages; its view starts at the first pixel. Exit code: 0; 2 if there
+is no such module.
 """
 
 from __future__ import annotations

@@ -45,7 +45,7 @@ def maps_of(path):
     with Image.open(path) as file:
         assert file.format == "PNG" and not set(file.info) - {"dpi"}
         picture = np.asarray(file.convert("RGB")).astype(int)
-    side, left, top = 80, 58, 80  # of an enlarged pixel; the margins of a map
+    side, left, top = 80, 58, 82  # of an enlarged pixel; the margins of a map
     width = 58 + 400 + 10 + 14 + 72
     return np.array(
         [
@@ -140,7 +140,7 @@ def test_single_pixels_of_large_frames_are_enlarged(tmp_path, frame):
     error[(x == 200) & (y == 300)] = 0.51
     write_error_map(tmp_path / "map", frame, x, y, error, BOUND)
     with Image.open(tmp_path / "map") as file:
-        second = np.asarray(file.convert("RGB")).astype(int)[80:560, 58 + 640 + 96 + 58 :][:, :640]
+        second = np.asarray(file.convert("RGB")).astype(int)[82:562, 58 + 640 + 96 + 58 :][:, :640]
     coloured = np.argwhere(np.ptp(second[5:-5, 5:-5], axis=-1) > 40) + 5
     assert len(coloured) == 25
     assert coloured.mean(axis=0).tolist() == [300, 200]

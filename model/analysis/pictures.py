@@ -25,7 +25,7 @@ _DPI = 100
 _NOMINAL = 640
 _PANEL = 400  # least side of a panel; smaller frames are enlarged to about this many pixels
 _LEFT, _GAP, _BAR, _RIGHT = 58, 10, 14, 72  # y axis; gap, colour bar, labels of the bar
-_HEAD, _TITLE, _BOTTOM = 50, 30, 78  # title of the picture, of a panel; x axis and key below it
+_HEAD, _TITLE, _BOTTOM = 52, 30, 80  # title of the picture, of a panel; x axis and key below it
 
 _BACKGROUND = "white"  # no span
 _PERFECT = "#d3d7dc"  # at most 1/2 LSB
@@ -94,7 +94,7 @@ def write_error_map(
         0, magnitude, "|error| = |code − 255 S|, worst of three channels", key,
         cmap=_colours("viridis", over=None if to_worst else _ABOVE),
         vmin=0, vmax=worst if to_worst else PERFECT_LSB,
-    ).set_label("LSB", fontsize=8)  # fmt: skip
+    ).set_label("LSB", fontsize=9)  # fmt: skip
 
     side = 1 + 2 * round(2 * max(1, max(shape) / _NOMINAL)) if max(shape) >= _PANEL else 1
     milli = 1000 * _grow(_place(np.full(shape, -np.inf), x, y, beyond), side)
@@ -117,7 +117,7 @@ def write_error_map(
     bar.set_ticks([_LEAST_MILLI, *decades, top], labels=labels)
     bar.ax.minorticks_off()
     end = "the largest error" if bound is None else "bound"
-    bar.set_label(f"1/1000 LSB, up to {end} − ½", fontsize=8)
+    bar.set_label(f"1/1000 LSB, up to {end} − ½", fontsize=9)
 
     size = f"{frame.width} × {frame.height}"
     parts = [name, size, f"{_count(len(beyond))} pixels shaded"]
@@ -173,23 +173,23 @@ class _Sheet:
             grey = ListedColormap([_PERFECT])
             axes.imshow(np.where(behind, 0.0, np.nan), cmap=grey, interpolation="nearest")
         image = axes.imshow(picture, cmap=cmap, interpolation="nearest", **scale)
-        axes.set_title(title, fontsize=9, loc="left")
-        axes.set_xlabel("x, pixels", fontsize=8, labelpad=2)
-        axes.set_ylabel("y, pixels", fontsize=8, labelpad=2)
+        axes.set_title(title, fontsize=10, loc="left")
+        axes.set_xlabel("x, pixels", fontsize=9, labelpad=2)
+        axes.set_ylabel("y, pixels", fontsize=9, labelpad=2)
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_locator(MaxNLocator(7, steps=[1, 2, 5, 10], integer=True))
-        axes.tick_params(labelsize=7)
+        axes.tick_params(labelsize=8)
 
         box = self._axes(left + width + unit * _GAP, top, unit * _BAR, self._panel[1])
         bar = self.figure.colorbar(image, cax=box)  # its end shows the map's colour for `over`
-        bar.ax.tick_params(labelsize=7)
+        bar.ax.tick_params(labelsize=8)
         patches = [
             Patch(facecolor=colour, edgecolor="0.4", linewidth=0.5, label=text)
             for colour, text in key
         ]
-        below = top + self._panel[1] + unit * 44
+        below = top + self._panel[1] + unit * 47
         self.figure.legend(
-            handles=patches, fontsize=8, frameon=False, ncols=3, borderpad=0, borderaxespad=0,
+            handles=patches, fontsize=9, frameon=False, ncols=3, borderpad=0, borderaxespad=0,
             handlelength=1.2, columnspacing=1.2, loc="upper left",
             bbox_to_anchor=(left / self._full[0], 1 - below / self._full[1]),
         )  # fmt: skip
@@ -198,7 +198,7 @@ class _Sheet:
     def write(self, *lines: str) -> None:
         """Write `lines` above the maps."""
         left, top = self._scale * np.array([_LEFT, 10]) / self._full
-        self.figure.text(left, 1 - top, "\n".join(lines), fontsize=10, va="top", linespacing=1.35)
+        self.figure.text(left, 1 - top, "\n".join(lines), fontsize=11, va="top", linespacing=1.35)
 
     def _axes(self, x: float, y: float, width: float, height: float):
         """Axes at `x`, `y` from the upper left corner, all in pixels."""

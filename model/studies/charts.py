@@ -242,17 +242,24 @@ def _save(figure: Figure, path: Path) -> None:
     figure.savefig(f"{path}.svg", metadata={"Date": None})
 
 
-def mach_chart(profiles: dict[str, tuple], path: Path) -> None:
+def _titled(title: str, scene: str) -> str:
+    return f"{title}\n{scene}" if scene else title
+
+
+def mach_chart(profiles: dict[str, tuple], path: Path, scene: str = "") -> None:
     """Chart the intensity along a scan line, and its change from pixel to pixel.
 
-    profiles: {technique: (x int[n], 255 S float64[n])}; "true" is the surface itself. Writes
-    `path`.png and .svg.
+    profiles: {technique: (x int[n], 255 S float64[n])}, before any rounding; "true" is the surface
+    itself. scene: what is shown, for the title. Writes `path`.png and .svg.
     """
     with matplotlib.rc_context(_STYLE):
         figure = Figure(figsize=(10, 7), layout="constrained")
         above, below = figure.subplots(2, 1, sharex=True)
         for k, (name, (x, value)) in enumerate(profiles.items()):
-            look = dict(color="black" if name == "true" else _colour(k), linewidth=0.9, label=name)
+            look = {
+                "color": "black" if name == "true" else _colour(k), "linewidth": 0.9,
+                "label": {"true": "true surface"}.get(name, TECHNIQUE_NAMES.get(name, name)),
+            }  # fmt: skip
             above.plot(x, value, **look)
             below.plot(x[1:] - 0.5, np.diff(value), **look)
         above.set_ylabel("255 S, green channel, LSB")
@@ -260,43 +267,55 @@ def mach_chart(profiles: dict[str, tuple], path: Path) -> None:
         below.set_ylim(-8, 8)
         below.set_xlabel("x along the middle scan line, pixels")
         above.legend()
-        figure.suptitle("Mach bands arise where the slope jumps")
+        figure.suptitle(_titled("Mach bands arise where the slope jumps", scene))
         _save(figure, path)
 
 
-def flicker_chart(films: dict[str, np.ndarray], changes: dict[str, list], path: Path) -> None:
+def flicker_chart(
+    films: dict[str, np.ndarray], changes: dict[str, list], path: Path, scene: str = ""
+) -> None:
     """Chart how much the pixels change while a surface turns into itself, by technique.
 
     films: {title: float64[h, w]}, the largest change of each pixel from a picture to the next, in
-    LSB. changes: {title: RMS change of each picture, in LSB}. Writes `path`.png and .svg.
+    LSB. changes: {title: RMS change of each picture, in LSB}. scene: what is shown, for the title.
+    Writes `path`.png and .svg.
     """
     with matplotlib.rc_context(_STYLE | {"axes.grid": False}):
-        figure = Figure(figsize=(2.2 * len(films), 5), layout="constrained")
+        figure = Figure(figsize=(2.2 * len(films), 5.2), layout="constrained")
         grid = figure.add_gridspec(2, len(films), height_ratios=(3, 2))
         top = max(float(np.nanmax(film)) for film in films.values())
+        maps = []
         for k, (title, film) in enumerate(films.items()):
-            axes = figure.add_subplot(grid[0, k])
-            shown = axes.imshow(film, cmap="inferno", vmin=0, vmax=min(top, 10))
-            axes.set_title(title)
-            axes.axis("off")
-        figure.colorbar(shown, ax=figure.axes, label="largest change per degree, LSB", shrink=0.6)
+            maps.append(figure.add_subplot(grid[0, k]))
+            shown = maps[-1].imshow(film, cmap="inferno", vmin=0, vmax=min(top, 10))
+            maps[-1].set_title(title)
+            maps[-1].axis("off")
+        figure.colorbar(
+            shown, ax=maps, label="largest change per degree, LSB", shrink=0.8,
+            extend="max" if top > 10 else "neither",
+        )  # fmt: skip
         axes = figure.add_subplot(grid[1, :])
         for k, (title, change) in enumerate(changes.items()):
             axes.plot(range(1, len(change) + 1), change, color=_colour(k), label=title)
         axes.set_xlabel("degree")
         axes.set_ylabel("RMS change, LSB")
         axes.set_yscale("log")
+        axes.yaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
+        axes.yaxis.set_major_formatter(matplotlib.ticker.StrMethodFormatter("{x:g}"))
+        axes.yaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
         axes.grid(True, alpha=0.3)
-        axes.legend()
-        figure.suptitle("A surface that turns into itself: every change comes from the mesh")
+        axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), borderaxespad=0)
+        figure.suptitle(
+            _titled("A surface that turns into itself: every change comes from the mesh", scene)
+        )
         _save(figure, path)
 
 
-def orientation_chart(pictures: dict[str, np.ndarray], path: Path) -> None:
+def orientation_chart(pictures: dict[str, np.ndarray], path: Path, scene: str = "") -> None:
     """Show a square in several orientations.
 
-    pictures: {title: float64[h, w]}, 255 S from 0 to 255, NaN outside the square. Writes
-    `path`.png and .svg.
+    pictures: {title: float64[h, w]}, 255 S from 0 to 255, NaN outside the square. scene: what is
+    shown, for the title. Writes `path`.png and .svg.
     """
     with matplotlib.rc_context(_STYLE | {"axes.grid": False}):
         figure = Figure(figsize=(3 * len(pictures) / 2, 6.4), layout="constrained")
@@ -308,5 +327,6 @@ def orientation_chart(pictures: dict[str, np.ndarray], path: Path) -> None:
             axes.set_title(title)
             axes.set_xticks([])
             axes.set_yticks([])
-        figure.suptitle("One corner black, three white: as one polygon, and as two triangles")
+        title = "One corner black, three white: as one polygon, and as two triangles"
+        figure.suptitle(_titled(title, scene))
         _save(figure, path)
