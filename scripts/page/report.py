@@ -29,7 +29,7 @@ from PIL import Image
 from plotly.offline import get_plotlyjs
 
 from phong75.model.analysis import error_budget
-from phong75.model.analysis.pruning import Row, prune
+from phong75.model.analysis.pruning import FeatureRow, prune
 from phong75.model.analysis.run_report import SCHEMA, failures
 from phong75.model.config import DEFAULT as C
 from phong75.model.config import TECHNIQUES
@@ -115,7 +115,7 @@ class SceneResult:
     error_map: str
     failures: list[str]
     budget: list[error_budget.Row] = field(default_factory=list)
-    features: dict[str, Row] = field(default_factory=dict)
+    features: dict[str, FeatureRow] = field(default_factory=dict)
 
     @property
     def size(self) -> str:
