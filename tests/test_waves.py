@@ -14,7 +14,7 @@ import pytest
 from phong75.model import twin
 from phong75.model.config import DEFAULT
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.scripts import waves
 from phong75.sim.frame import waveform
 

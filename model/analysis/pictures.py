@@ -7,12 +7,23 @@ The same pixels always give the same bytes: the files hold no date and no progra
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
+from phong75.model.arrays import Flags, Reals
 from phong75.model.frame import Frame
 from phong75.model.twin import Pixels
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.colorbar import Colorbar
+    from matplotlib.colors import Colormap
+
+#: What a pixel of a picture is: codes or reals.
+Shown = TypeVar("Shown", np.uint8, np.float64)
 
 #: Largest error of perfect rounding to codes.
 PERFECT_LSB = 0.5
@@ -34,7 +45,7 @@ _ABOVE = "#e8590c"  # more than 1/2 LSB, in the map of |error|
 _BROKEN = "#0057d8"  # more than the derived bound
 
 
-def canvas(frame: Frame, x, y, rgb) -> np.ndarray:
+def canvas(frame: Frame, x: ArrayLike, y: ArrayLike, rgb: ArrayLike) -> NDArray[np.uint8]:
     """The picture of the pixels at `x`, `y` (int[n]) with codes `rgb` (int[n, 3]).
 
     Returns uint8[height, width, 3]. Positions without a pixel show the frame's background. Of two
@@ -46,12 +57,20 @@ def canvas(frame: Frame, x, y, rgb) -> np.ndarray:
     return _place(picture, x, y, rgb)
 
 
+def picture(frame: Frame, pixels: Pixels) -> Image.Image:
+    """The picture of `pixels` of `frame` as a PIL image (RGB), which a notebook shows as it is.
+
+    pixels: of `render`, or of a simulation.
+    """
+    return Image.fromarray(canvas(frame, pixels.x, pixels.y, pixels.rgb))
+
+
 def write_picture(path: str | Path, picture: np.ndarray) -> None:
     """Write `picture` (uint8[height, width, 3]) as PNG. Raises OSError."""
     Image.fromarray(picture).save(path, format="PNG")
 
 
-def excess(error: np.ndarray) -> np.ndarray:
+def excess(error: ArrayLike) -> Reals:
     """How far each pixel is above the 1/2 LSB of perfect rounding, float64[n], in LSB.
 
     error: float64[n, 3], |code - 255 S| in LSB. A pixel counts by its worst channel; 0 or less
@@ -62,8 +81,9 @@ def excess(error: np.ndarray) -> np.ndarray:
 
 
 def write_error_map(
-    path: str | Path, frame: Frame, x, y, error, bound: float | None, *, name: str = ""
-) -> None:
+    path: str | Path, frame: Frame, x: ArrayLike, y: ArrayLike, error: ArrayLike,
+    bound: float | None, *, name: str = "",
+) -> None:  # fmt: skip
     """Write a PNG with two maps of `error` (float64[n, 3], LSB) at `x`, `y` (int[n]).
 
     The first map shows |error| from 0 to the 1/2 LSB of perfect rounding; pixels above 1/2 have a
@@ -154,7 +174,10 @@ class _Sheet:
         self.figure = Figure(figsize=self._full / dpi, dpi=dpi, facecolor="white")
         FigureCanvasAgg(self.figure)
 
-    def draw(self, index: int, picture, title: str, key, *, cmap, behind=None, **scale):
+    def draw(
+        self, index: int, picture: Reals, title: str, key: list[tuple[str, str]], *,
+        cmap: Colormap, behind: Flags | None = None, **scale: Any,
+    ) -> Colorbar:  # fmt: skip
         """Draw map `index` (0 or 1) with its title, its colour bar and its key below it.
 
         picture: float64[height, width], NaN where nothing is drawn. key: (colour, text) pairs.
@@ -201,13 +224,13 @@ class _Sheet:
         left, top = self._scale * np.array([_LEFT, 10]) / self._full
         self.figure.text(left, 1 - top, "\n".join(lines), fontsize=11, va="top", linespacing=1.35)
 
-    def _axes(self, x: float, y: float, width: float, height: float):
+    def _axes(self, x: float, y: float, width: float, height: float) -> Axes:
         """Axes at `x`, `y` from the upper left corner, all in pixels."""
         box = np.array([x, self._full[1] - y - height, width, height])
         return self.figure.add_axes(tuple(box / np.tile(self._full, 2)))
 
 
-def _colours(name: str, start: float = 0.0, over: str | None = None):
+def _colours(name: str, start: float = 0.0, over: str | None = None) -> Colormap:
     """The colour map `name` of matplotlib from `start` (0 to 1) on.
 
     over: the colour of values beyond the scale, which the colour bar then shows at its end.
@@ -215,9 +238,9 @@ def _colours(name: str, start: float = 0.0, over: str | None = None):
     import matplotlib
     from matplotlib.colors import ListedColormap
 
-    cmap = ListedColormap(matplotlib.colormaps[name](np.linspace(start, 1, 256)))
-    cmap = cmap.with_extremes(over=over)
-    cmap.colorbar_extend = "max" if over else "neither"
+    shades = ListedColormap(matplotlib.colormaps[name](np.linspace(start, 1, 256)))
+    cmap = shades.with_extremes(over=over)
+    cmap.colorbar_extend = "max" if over else "neither"  # type: ignore[assignment]
     return cmap
 
 
@@ -225,7 +248,7 @@ def _count(number: int) -> str:
     return f"{number:,}".replace(",", "\N{NO-BREAK SPACE}")
 
 
-def _grow(picture: np.ndarray, side: int) -> np.ndarray:
+def _grow(picture: Reals, side: int) -> Reals:
     """`picture` with the largest value of the square of `side` (odd) pixels around each pixel."""
     reach = side // 2
     for axis in (0, 1):
@@ -238,17 +261,11 @@ def _grow(picture: np.ndarray, side: int) -> np.ndarray:
     return picture
 
 
-def _place(picture: np.ndarray, x, y, values) -> np.ndarray:
+def _place(
+    picture: NDArray[Shown], x: ArrayLike, y: ArrayLike, values: ArrayLike
+) -> NDArray[Shown]:
     """Set the pixels of `picture` at `x`, `y` to `values`; positions outside are left out."""
     x, y = np.asarray(x), np.asarray(y)
     inside = (x >= 0) & (x < picture.shape[1]) & (y >= 0) & (y < picture.shape[0])
     picture[y[inside], x[inside]] = np.asarray(values)[inside]
     return picture
-
-
-def picture(frame: Frame, pixels: Pixels) -> Image.Image:
-    """The picture of `pixels` of `frame` as a PIL image (RGB), which a notebook shows as it is.
-
-    pixels: of `render`, or of a simulation.
-    """
-    return Image.fromarray(canvas(frame, pixels.x, pixels.y, pixels.rgb))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import matplotlib.ticker
@@ -23,7 +24,7 @@ PERFECT_RMS = 12**-0.5
 #: Colours that remain distinct with colour blindness (Okabe and Ito, 2008).
 _CURVES = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
 
-_STYLE = {
+_STYLE: dict[Any, Any] = {
     "svg.hashsalt": "phong75", "font.size": 8, "axes.grid": True, "grid.alpha": 0.3,
     "axes.titlesize": 9, "legend.fontsize": 7, "lines.markersize": 4,
 }  # fmt: skip

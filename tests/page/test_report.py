@@ -19,7 +19,7 @@ from phong75.model.analysis.pictures import canvas, write_picture
 from phong75.model.config import TECHNIQUES
 from phong75.model.frame import InputError
 from phong75.model.front.scene import bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.scripts import run as run_scene
 from phong75.scripts.page import report
 from phong75.sim.design import PACKAGE
