@@ -205,7 +205,10 @@ def _run(job, simulate, steps, config, folder):
         shown = pictures.canvas(frame, expected.x, expected.y, metrics.rounded(ideal))
         pictures.write_picture(folder / "reference.png", shown)
         error = np.abs(codes - ideal[:both])
-        pictures.write_error_map(folder / "error.png", frame, x[:both], y[:both], error, bound)
+        pictures.write_error_map(
+            folder / "error.png", frame, x[:both], y[:both], error, bound,
+            name=f"{found['scene']}, {found['technique']}",
+        )  # fmt: skip
     text = json.dumps(found, indent=2, allow_nan=False) + "\n"
     (folder / "report.json").write_text(text, encoding="utf-8")
     for reason in pruning.missing(frame, built, config):
