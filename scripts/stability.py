@@ -19,6 +19,7 @@ from phong75.model.analysis.run_report import versions
 from phong75.model.config import DEFAULT as C
 from phong75.model.front.scene import bundled_scenes
 from phong75.model.studies import adversarial, corner_cases
+from phong75.scripts import recorded
 from phong75.scripts.run import Steps
 from phong75.sim.build import BuildError
 from phong75.sim.design import BUILD
@@ -117,15 +118,6 @@ def error_table(rows: list[dict]) -> Table:
     return table
 
 
-def error_lines(rows: list[dict]) -> list[str]:
-    """The same as lines of the README's table."""
-    return [
-        f"| {row['family']} | {row['bound_lsb']:.3f} | {row['scenes_lsb']:.3f} "
-        f"| {row['adversarial_lsb']:.3f} |"
-        for row in rows
-    ]
-
-
 def power_table(rows: list[dict]) -> Table:
     """The error of cos(s)**n alone."""
     table = Table(title="cos(s)ⁿ alone, every code of 1 − cos(s)", title_style="bold")
@@ -195,6 +187,11 @@ def run(steps: Steps) -> dict:
     }
 
 
+def figures(report: dict) -> dict:
+    """What is recorded of `report`: its rows and errors, without versions and times."""
+    return {name: report[name] for name in ("rows", "errors", "powers", "amm_2012_at_20")}
+
+
 def main() -> int:
     """Run, print, write; returns the exit code."""
     begin = time.perf_counter()
@@ -207,6 +204,7 @@ def main() -> int:
     except (BuildError, SimulationError, OSError) as error:
         print(str(error).partition("\n")[0], file=sys.stderr)
         return 2
+    recorded.save("stability", "make stability", ("verilator", "numpy"), figures(report))
     console = Console()
     for table in (
         case_table(report["rows"]), error_table(report["errors"]), power_table(report["powers"])
