@@ -157,7 +157,7 @@ def resources(config: Config, seeds: int, count_gates: bool, steps: Steps) -> di
         "dsp": used["dsp"],
         "constant_multipliers": instances(config)["constant_multiplier"],
         "constant_lut_cells": ecp5.lut_cells(trees),
-        "lut_sites": used["lut_sites"],
+        "lut_sites": used["lut_sites"], "lut_cells": ecp5.lut_cells(used),
         "ff": used["ff"], "ebr": used["ebr"], "gate_equivalents": gates,
         "latency": latencies(config)["pixel"] + 3, "clock_mhz": clock,
     }  # fmt: skip

@@ -273,7 +273,8 @@ def test_the_bars():
 
 
 def test_what_was_not_measured_is_a_dash():
-    found = dict.fromkeys(tables.PRUNING, 3) | {"constant_multipliers": 0, "constant_lut_cells": 0}
+    found = dict.fromkeys(tables.PRUNING, 3) | {"lut_sites": 3, "constant_multipliers": 0}
+    found["constant_lut_cells"] = 0
     pruned = found | {"constant_multipliers": 2, "constant_lut_cells": 70, "dsp": 1}
     pruned["gate_equivalents"] = pruned["clock_mhz"] = None
     cells = tables.pruning_row("a", pruned, found)

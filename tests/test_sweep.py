@@ -29,6 +29,7 @@ from phong75.sim import design
 from phong75.sim.elaborate import instances
 from phong75.sim.frame.methods import measure
 from phong75.sim.latency import latencies
+from tests.records import differences
 
 SMALL = (("model/data/highlights.toml", (72, 24), ""), ("model/data/facets.toml", (96, 16), ""))
 SLICE = ("width_12", "table_8_newton", "dot_first_16", "quadratic_spans_16")
@@ -349,7 +350,8 @@ def test_the_kept_clocks_are_ones_that_the_chip_allows():
     for name, found in kept.items():
         limit, _ = synthesis.clock_limit(found, clocks.GRADE)
         assert 50 < found["clock_mhz"] <= (limit or np.inf), name
-        assert found["dsp"] <= 40 and 0 < found["lut_sites"] < 83640 and found["key"], name
+        logic = found.get("lut_sites") or found["lut_cells"]
+        assert found["dsp"] <= 40 and 0 < logic < 83640 and found["key"], name
 
 
 def test_failures():
@@ -367,7 +369,7 @@ def test_the_record_has_the_kept_clocks():
     assert set(tables.SHOWN) <= set(found) <= set(CONFIGS)
     for name, row in found.items():
         if row["clock_source"] != "stated":  # of today's design
-            assert all(row[figure] == kept[name][figure] for figure in clocks.FIGURES), name
+            assert all(row.get(f) == kept[name].get(f) for f in clocks.FIGURES), name
     assert found["default"]["clock_source"] != "stated"
 
 
@@ -376,4 +378,4 @@ def test_the_record_is_what_is_measured_now(tmp_path, monkeypatch):
     monkeypatch.setattr(sweep, "measure", lambda point: measure(point, folder=tmp_path))
     now = sweep.figures([sweep.row(points()[0], area=False, route=False)])["configurations"]
     kept = recorded.figures("sweep")["configurations"]["default"]
-    assert now["default"] == pytest.approx(kept, rel=1e-4), "make sweep ROUTE=default"
+    assert not differences(now["default"], kept, 1e-5), "make sweep ROUTE=default"

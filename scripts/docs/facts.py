@@ -15,8 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from phong75.model import registers, spans
 from phong75.model import config as config_module
+from phong75.model import registers, spans
 from phong75.model.analysis import error_budget
 from phong75.model.analysis.pruning import prune
 from phong75.model.config import DEFAULT as C

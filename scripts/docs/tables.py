@@ -34,6 +34,13 @@ def grouped(value: int) -> str:
     return f"{value:,}".replace(",", "\u202f")
 
 
+def logic(records: Iterable[dict[str, Any]]) -> tuple[str, str]:
+    """(key, title) of the column that counts the logic of `records`: LUT sites, or LUT cells where
+    only Yosys's count was kept of one of them. One table, one count."""
+    some = any(r.get("lut_cells") is not None and r.get("lut_sites") is None for r in records)
+    return ("lut_cells", "LUT cells (Yosys)") if some else ("lut_sites", "LUT sites")
+
+
 # -- scenes ----------------------------------------------------------------------------------------
 
 
@@ -93,7 +100,7 @@ def _synthesis(found: dict[str, Any]) -> list[tuple[str, str, str]]:
              "without the harness of shift registers that stands in for pins"),
             ("logic", f"{used['lut_sites']} LUT sites, {used['ff']} flip-flops",
              f"Yosys counts {used['lut']} LUT4, {used['carry']} carry cells and {used['lut_ram']} "
-             "LUT RAM cells in them (see [LUT site](../glossary.md#lut-site))"),
+             "LUT RAM cells in them; the glossary defines a LUT site"),
         ]  # fmt: skip
     if gates := found.get("gate_equivalents"):
         rows.append((
@@ -259,20 +266,21 @@ SHOWN = (
 def sweep(configurations: dict[str, dict[str, Any]]) -> str:
     """The configurations `SHOWN` of a sweep. Bounds are of the error against the port integers."""
     rows = []
+    key, title = logic(configurations[name] for name in SHOWN)
     for name in SHOWN:
         of = configurations[name]
         stated = " (stated)" if of["clock_source"] == "stated" else ""
         rows.append((
             f"`{name}`", f"{of['method']}, {of['label']}", str(of["multipliers"]),
-            number(of["lut_sites"]), str(of["latency_cycles"]),
+            number(of.get(key)), str(of["latency_cycles"]),
             f"{number(of['clock_mhz'])}{stated}", number(of["frame_us"]),
             number(of["rms_lsb"], 3), number(of["max_lsb"], 2),
             "none derived" if of["bound_lsb"] is None else number(of["bound_lsb"], 2),
             f"{100 * of['correctly_rounded']:.2f} %",
         ))  # fmt: skip
     header = (
-        "configuration", "method, size", "multipliers", "LUT sites", "latency, cycles",
-        "clock, MHz", "frames, µs", "RMS error, LSB", "largest error, LSB", "bound, LSB",
+        "configuration", "method, size", "multipliers", title, "latency, cycles", "clock, MHz",
+        "frames, µs", "RMS error, LSB", "largest error, LSB", "bound, LSB",
         "rounded correctly",
     )  # fmt: skip
     return markdown(header, rows, left=2)
@@ -387,18 +395,21 @@ def powers(rows: Iterable[dict[str, Any]]) -> str:
 
 # -- leaving out -----------------------------------------------------------------------------------
 
-#: Columns of the table of pruned builds as keys of a record, in order; that of the constant
-#: multipliers is the second.
+#: Columns of the table of pruned builds as keys of a record, in order. "logic" stands for the key
+#: that `logic` chooses; the column of the constant multipliers is the second.
 PRUNING = (
-    "dsp", "lut_sites", "ff", "ebr", "gate_equivalents", "latency", "clock_mhz",
+    "dsp", "logic", "ff", "ebr", "gate_equivalents", "latency", "clock_mhz",
     "simulation_clocks_per_s", "toggles_per_pixel",
 )  # fmt: skip
 
 
-def pruning_row(name: str, pruned: dict[str, Any], full: dict[str, Any]) -> list[str]:
-    """The cells of a build: each figure, and percent of the full design."""
+def pruning_row(
+    name: str, pruned: dict[str, Any], full: dict[str, Any], counted: str = "lut_sites"
+) -> list[str]:
+    """The cells of a build: each figure, and percent of the full design. counted: see `logic`."""
     cells = []
-    for key in PRUNING:
+    for column in PRUNING:
+        key = counted if column == "logic" else column
         value = pruned[key]
         if value is None:
             cells.append(DASH)
@@ -413,11 +424,12 @@ def pruning_row(name: str, pruned: dict[str, Any], full: dict[str, Any]) -> list
 def pruning(builds: list[dict[str, Any]]) -> str:
     """All pruned builds; the full design, on the teapot, first."""
     full = next(build["full"] for build in builds if build["name"] == "teapot")
-    rows = [pruning_row("everything", full, full)]
-    rows += [pruning_row(build["name"], build["pruned"], build["full"]) for build in builds]
+    key, title = logic(build[which] for build in builds for which in ("pruned", "full"))
+    rows = [pruning_row("everything", full, full, key)]
+    rows += [pruning_row(build["name"], build["pruned"], build["full"], key) for build in builds]
     header = (
         "scene or configuration", "multipliers", "constant multipliers, their LUT cells (Yosys)",
-        "LUT sites", "flip-flops", "block RAMs", "gate equivalents", "latency, cycles",
+        title, "flip-flops", "block RAMs", "gate equivalents", "latency, cycles",
         "clock, MHz", "simulation, cycles/s", "toggles per pixel",
     )  # fmt: skip
     return markdown(header, rows)

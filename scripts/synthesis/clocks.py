@@ -34,7 +34,7 @@ def kept(config: Config) -> dict | None:
     found = recorded.figures(NAME).get("configurations", {}).get(config.name)
     if found is None or found["key"] != key(config):
         return None
-    return {name: found[name] for name in FIGURES} | {"clock_source": f"{SOURCE}, kept"}
+    return {name: found.get(name) for name in FIGURES} | {"clock_source": f"{SOURCE}, kept"}
 
 
 def keep(name: str, found: dict) -> None:
