@@ -59,6 +59,20 @@ def _shared_clocks() -> list[float]:
     ]  # fmt: skip
 
 
+def _quadratic_clocks() -> list[float]:
+    return [of["clock_mhz"] for name, of in _clocks().items() if name.startswith("quadratic_spans")]
+
+
+def _inferred() -> str:
+    """Configurations whose longest path starts in a table, and their clocks."""
+    slow = [
+        (of["clock_mhz"], name)
+        for name, of in _clocks().items()
+        if of["longest_path"].startswith("rom ")
+    ]
+    return ", ".join(f"`{name}` {clock:.0f} MHz" for clock, name in sorted(slow))
+
+
 def _front() -> str:
     return ", ".join(
         f"`{name}` ({of['frame_us']:.0f} µs, {of['rms_lsb']:.3f} LSB)"
@@ -124,7 +138,11 @@ TABLES: dict[str, Callable[[], str]] = {
     "features": facts.features,
     "configurations": facts.configurations,
     "scenes": lambda: tables.scenes(_record("scenes")),
-    "long-runs": lambda: tables.hardware(tables.hardware_rows()),
+    "hardware": lambda: tables.hardware(tables.hardware_rows(tables.HARDWARE)),
+    "tests": lambda: tables.hardware(tables.hardware_rows(tables.TESTS)),
+    "speed": lambda: tables.hardware(tables.hardware_rows(tables.SPEED)),
+    "shapes": facts.shapes,
+    "proofs": facts.proofs,
     "lut-counts": lambda: tables.lut_counts(_synthesis("resources")),
     "sweep": lambda: tables.sweep(_sweep()),
     "clocks": lambda: tables.clocks(_clocks()),
@@ -149,6 +167,7 @@ def _figures() -> dict[str, Callable[[], str]]:
         "multipliers": lambda: str(facts.modules()["multiplier"]),
         "bound.n32": lambda: facts.above(facts.bound(32)),
         "bound.n128": lambda: facts.above(facts.bound(128)),
+        "bound.intensity": lambda: facts.above(facts.intensity_bound(), 4),
         "bound.jump": lambda: facts.above(facts.jump()),
         "scenes": lambda: str(len(bundled_scenes())),
         "configurations": lambda: str(len(CONFIGS)),
@@ -170,6 +189,9 @@ def _figures() -> dict[str, Callable[[], str]]:
         "clocks.shared": lambda: str(len(_shared_clocks())),
         "clocks.shared-low": lambda: f"{min(_shared_clocks()):.0f}",
         "clocks.shared-high": lambda: f"{max(_shared_clocks()):.0f}",
+        "clocks.inferred": _inferred,
+        "clocks.quadratic-low": lambda: f"{min(_quadratic_clocks()):.0f}",
+        "clocks.quadratic-high": lambda: f"{max(_quadratic_clocks()):.0f}",
         "highlight.low": lambda: f"{min(_highlights()):.0f}",
         "highlight.high": lambda: f"{max(_highlights()):.0f}",
         "cocotb-share": lambda: f"{_record('bench')['cocotb_to_bare']:.2f}",

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import inspect
 import math
 import re
 from pathlib import Path
@@ -22,9 +23,11 @@ from phong75.model.analysis.pruning import prune
 from phong75.model.config import DEFAULT as C
 from phong75.model.config import TECHNIQUES, Config, Format
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
+from phong75.model.front.scene import SHAPES
 from phong75.model.studies.methods import points
 from phong75.scripts.docs.tables import markdown
 from phong75.sim.elaborate import instances
+from phong75.sim.formal.proofs import PROOFS
 from phong75.sim.latency import latencies
 
 #: Registers between the walker's input and the pixel's output around `latencies()["pixel"]`: the
@@ -175,6 +178,11 @@ def jump(n: float = 32) -> float:
     return error_budget.bound_lsb(_frame(0.5, n, weight)) - bound(n)
 
 
+def intensity_bound() -> float:
+    """The bound in LSB of Gouraud and flat shading against the interpolated intensity."""
+    return error_budget.bound_lsb(_frame(0.5, 1), TECHNIQUES["gouraud"])
+
+
 def above(value: float, digits: int = 2) -> str:
     """`value` rounded up: a bound stays one."""
     return f"{math.ceil(value * 10**digits) / 10**digits:.{digits}f}"
@@ -185,6 +193,33 @@ def budget() -> str:
     rows = error_budget.rows(0, _frame(1.0, 10.0))
     cells = ((row.stage, f"{row.bound:.3g}", row.why.replace("|", "\\|")) for row in rows)
     return markdown(("stage", "bound", "why"), ((a, b, c) for a, b, c in cells), left=3)
+
+
+# -- scenes and proofs -----------------------------------------------------------------------------
+
+
+def shapes() -> str:
+    """The bundled shapes and their parameters, as scene files name them."""
+    rows = []
+    for name, make in SHAPES.items():
+        given = inspect.signature(make).parameters.values()
+        rows.append((f"`{name}`", ", ".join(f"`{p.name}` ({p.default:g})" for p in given)))
+    return markdown(("shape", "parameters (default)"), rows, left=2)
+
+
+MODES = {
+    "prove": "unbounded induction", "bmc": "bounded", "cover": "reachable",
+    "structure": "netlist structure",
+}  # fmt: skip
+
+
+def proofs() -> str:
+    """What is proven, of which size, and how many broken designs must fail."""
+    rows = (
+        (proof.name, proof.claim, proof.size, MODES[proof.mode], str(len(proof.broken_designs)))
+        for proof in PROOFS
+    )
+    return markdown(("proof", "claim", "size", "kind", "broken designs"), rows, left=4)
 
 
 # -- configurations --------------------------------------------------------------------------------

@@ -216,10 +216,17 @@ LONG_RUNS: dict[str, Callable[[dict[str, Any]], list[tuple[str, str, str]]]] = {
 }  # fmt: skip
 
 
-def hardware_rows() -> list[HardwareRow]:
-    """The lines of all long runs that have a record."""
+#: Which of them docs/ shows where.
+HARDWARE = ("synth-grade6", "synth-grade8", "activity")
+TESTS = ("netlist", "icarus", "formal", "coverage", "mutate", "prune-random")
+SPEED = ("bench",)
+
+
+def hardware_rows(names: Iterable[str] = tuple(LONG_RUNS)) -> list[HardwareRow]:
+    """The lines of the long runs `names` that have a record."""
     rows = []
-    for name, lines in LONG_RUNS.items():
+    for name in names:
+        lines = LONG_RUNS[name]
         if record := recorded.load(name):
             rows += [
                 HardwareRow(what, figure, record["command"], caveat, name)
