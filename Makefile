@@ -21,7 +21,7 @@ PYTHON := .venv/bin/python
 quote = '$(subst ','\'',$(1))'
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run prune test lint results bench sweep tessellation synth netlist icarus formal coverage activity mutate \
+.PHONY: help setup run prune check test lint results bench sweep tessellation synth netlist icarus formal coverage activity mutate \
   hardware waves clean
 
 help: ## this list
@@ -39,7 +39,8 @@ help: ## this list
 	@echo '                SCENE=all SEEDS=3   placements to try for the clock; 0: no clock'
 	@echo '                SCENE=all GATES=1   count gate equivalents, too (see make synth)'
 	@echo 'make prune-random SCENES=200 random scenes, each on the build pruned to it (minutes)'
-	@echo 'make test     lint, then all tests'
+	@echo 'make check    lint and the fast tests: a minute'
+	@echo 'make test     lint, then all tests of the main installation'
 	@echo 'make lint     Verilator -Wall and Verible on rtl/ and sim/, Ruff on Python'
 	@echo 'make results  the README'"'"'s table of results, measured anew'
 	@echo 'make report   one page of all results: build/report/index.html'
@@ -95,8 +96,11 @@ SCENES ?= 200
 prune-random: setup
 	@$(PYTHON) -m tests.campaigns.random_scenes $(call quote,$(SCENES))
 
-test: lint
-	@$(PYTHON) -m pytest
+check: setup
+	@$(PYTHON) -m tests.run check
+
+test: setup
+	@$(PYTHON) -m tests.run test
 
 lint: setup
 	@$(PYTHON) -m phong75.scripts.lint
@@ -111,10 +115,10 @@ report: setup
 test-report: setup
 	@command -v chromium >/dev/null || \
 	  { echo 'The report page is tested in Chromium: apt-get install chromium' >&2; exit 2; }
-	@$(PYTHON) -m pytest -m browser
+	@$(PYTHON) -m pytest tests/page
 
-test-all: lint
-	@$(PYTHON) -m pytest -m ''
+test-all: setup
+	@$(PYTHON) -m tests.run all
 
 stability: setup
 	@$(PYTHON) -m phong75.scripts.stability

@@ -9,12 +9,14 @@ configurations live side by side.
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import os
 import subprocess
 import sys
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 
 import cocotb_tools.config
@@ -95,6 +97,16 @@ def _replace(path: Path, text: str) -> None:
     part.replace(path)
 
 
+@contextmanager
+def _alone(target: Path):
+    """Hold a lock beside `target` while the body makes it: of several processes that need the
+    same, one makes it, and the others wait. The lock ends with its process."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with open(target.with_name(f"{target.name}.lock"), "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
 def generate_header(config: Config = DEFAULT) -> Path:
     """Write `phong_config.vh` of `config` into a folder of its own; returns the include folder."""
     text = header(config)
@@ -108,8 +120,14 @@ def runtime() -> Path:
     sources = [_INCLUDE / f"{name}.cpp" for name in _RUNTIME]
     folder = SHARED / digest(CXX_FLAGS, *sources)
     library = folder / "libverilated.a"
-    if library.is_file():
-        return library
+    with _alone(folder):
+        if not library.is_file():
+            _compile_runtime(sources, library)
+    return library
+
+
+def _compile_runtime(sources: list[Path], library: Path) -> None:
+    folder = library.parent
     folder.mkdir(parents=True, exist_ok=True)
     jobs = [
         subprocess.Popen(
@@ -126,7 +144,6 @@ def runtime() -> Path:
     part = folder / f"part.{os.getpid()}.a"
     run_tool(["ar", "rcs", part, *[folder / f"{name}.o" for name in _RUNTIME]])
     part.replace(library)
-    return library
 
 
 def _first_header(options: list[str]) -> Path:
@@ -136,11 +153,12 @@ def _first_header(options: list[str]) -> Path:
     """
     folder = SHARED / f"first-{digest(*options, _INCLUDE / 'verilated.h')}"
     header, compiled = folder / "first.h", folder / "first.h.gch"
-    if not compiled.is_file():
-        _replace(header, '#include "verilated.h"\n')
-        part = folder / f"{os.getpid()}.gch"
-        run_tool(["g++", *options, "-x", "c++-header", header, "-o", part])
-        part.replace(compiled)
+    with _alone(folder):
+        if not compiled.is_file():
+            _replace(header, '#include "verilated.h"\n')
+            part = folder / f"{os.getpid()}.gch"
+            run_tool(["g++", *options, "-x", "c++-header", header, "-o", part])
+            part.replace(compiled)
     return header
 
 
@@ -236,9 +254,14 @@ class Bench(Verilator):
 
     def make(self) -> Path:
         """Build if need be. Returns the folder. Raises BuildError."""
-        if self.built:
-            return self.folder
-        library = runtime()
+        if not self.built:
+            library = runtime()
+            with _alone(self.folder):
+                if not self.built:
+                    self._make(library)
+        return self.folder
+
+    def _make(self, library: Path) -> None:
         units = [file for file in self.verilate() if file.suffix == ".cpp"]
         whole = self.folder / "whole.cpp"
         whole.write_text("".join(f'#include "{unit.name}"\n' for unit in units))
@@ -258,7 +281,6 @@ class Bench(Verilator):
         )  # fmt: skip
         objects[0].unlink()
         part.replace(self.folder / self._top)
-        return self.folder
 
     def _model(self, options: list[str]) -> Path:
         """Compile what Verilator wrote."""
@@ -271,10 +293,11 @@ class Bench(Verilator):
         """Compile the main program, of which there is one for all models with the same ports."""
         source, ports = SIM / "main.cpp", self.folder / "Vtop.h"
         target = SHARED / f"main-{digest(*options, source, ports)}.o"
-        if not target.is_file():
-            part = target.with_suffix(f".{os.getpid()}")
-            run_tool(["g++", *options, f"-I{self.folder}", "-c", source, "-o", part])
-            part.replace(target)
+        with _alone(target):
+            if not target.is_file():
+                part = target.with_suffix(f".{os.getpid()}")
+                run_tool(["g++", *options, f"-I{self.folder}", "-c", source, "-o", part])
+                part.replace(target)
         return target
 
     def _source(self) -> Path:

@@ -378,7 +378,7 @@ def outside(*command, **environment):
     """Run `command` in the project; `make` must not think that another make runs it."""
     inherited = {k: v for k, v in os.environ.items() if not k.startswith(("MAKE", "MFLAGS"))}
     return subprocess.run(
-        command, cwd=ROOT, env=inherited | environment, capture_output=True, text=True, timeout=120
+        command, cwd=ROOT, env=inherited | environment, capture_output=True, text=True
     )
 
 
