@@ -3,18 +3,13 @@
 
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable
 from typing import Any
 
-from phong75 import __version__
-from phong75.model.analysis.pruning import BY_HAND
 from phong75.model.config import TECHNIQUES
-from phong75.model.front.scene import bundled_scenes
 from phong75.model.studies.methods import CONFIGS
 from phong75.scripts import recorded
 from phong75.scripts.docs import facts, tables
-from phong75.sim.formal.proofs import PROOFS
 
 #: Tables that change with date and commit alone: filled, and not compared.
 UNCOMPARED = ("provenance",)
@@ -156,61 +151,33 @@ TABLES: dict[str, Callable[[], str]] = {
 }
 
 
-def _figures() -> dict[str, Callable[[], str]]:
-    figures: dict[str, Callable[[], str]] = {
-        "version": lambda: __version__,
-        # of the design
-        "latency.first-pixel": lambda: str(facts.latency("first_pixel")),
-        "latency.first-pixel-gouraud": lambda: str(
-            facts.latency("first_pixel", TECHNIQUES["gouraud"])
-        ),
-        "multipliers": lambda: str(facts.modules()["multiplier"]),
-        "bound.n32": lambda: facts.above(facts.bound(32)),
-        "bound.n128": lambda: facts.above(facts.bound(128)),
-        "bound.intensity": lambda: facts.above(facts.intensity_bound(), 4),
-        "bound.jump": lambda: facts.above(facts.jump()),
-        "scenes": lambda: str(len(bundled_scenes())),
-        "configurations": lambda: str(len(CONFIGS)),
-        "configurations-by-hand": lambda: str(len(BY_HAND)),
-        "proofs": lambda: str(len(PROOFS)),
-        "proofs.unbounded": lambda: str(sum(proof.mode == "prove" for proof in PROOFS)),
-        "broken-designs": lambda: str(sum(len(proof.broken_designs) for proof in PROOFS)),
-        # of the records
-        "cases": lambda: str(len(_record("stability")["rows"])),
-        "power.n20": lambda: f"{_power_error(20):.2g}",
-        "power.amm": lambda: f"{_record('stability')['amm_2012_at_20']:g}",
-        "mutants": lambda: str(_mutants("mutants")),
-        "clock.median": lambda: f"{_synthesis('clock_mhz', 'median'):.0f}",
-        "clock.best": lambda: f"{_synthesis('clock_mhz', 'best'):.0f}",
-        "lut-sites": lambda: str(_synthesis("resources", "lut_sites")),
-        "front": _front,
-        "clocks.stated": _unrouted,
-        "clocks.routed": lambda: str(len(_clocks())),
-        "clocks.shared": lambda: str(len(_shared_clocks())),
-        "clocks.shared-low": lambda: f"{min(_shared_clocks()):.0f}",
-        "clocks.shared-high": lambda: f"{max(_shared_clocks()):.0f}",
-        "clocks.inferred": _inferred,
-        "clocks.quadratic-low": lambda: f"{min(_quadratic_clocks()):.0f}",
-        "clocks.quadratic-high": lambda: f"{max(_quadratic_clocks()):.0f}",
-        "highlight.low": lambda: f"{min(_highlights()):.0f}",
-        "highlight.high": lambda: f"{max(_highlights()):.0f}",
-        "cocotb-share": lambda: f"{_record('bench')['cocotb_to_bare']:.2f}",
-        "model-fps": lambda: f"{_record('bench')['model_frames_per_s']:.0f}",
-    }
-    for block in (
-        "normalizer", "shading_unit", "reflection", "specular_power_tables", "specular_weight",
-        "inverse_sqrt_linear", "colour_channel",
-    ):  # fmt: skip
-        figures[f"latency.{block}"] = functools.partial(_latency, block)
-    return figures
-
-
-def _latency(block: str) -> str:
-    return str(facts.latency(block))
-
-
 def _highlights() -> list[float]:
     return tables.highlight_ratios(_record("tessellation")["meshes"])
 
 
-FIGURES = _figures()
+FIGURES: dict[str, Callable[[], str]] = {
+    # of the design
+    "latency.first-pixel": lambda: str(facts.latency("first_pixel")),
+    "latency.first-pixel-gouraud": lambda: str(facts.latency("first_pixel", TECHNIQUES["gouraud"])),
+    "multipliers": lambda: str(facts.modules()["multiplier"]),
+    "bound.n32": lambda: facts.above(facts.bound(32)),
+    "bound.n128": lambda: facts.above(facts.bound(128)),
+    "bound.intensity": lambda: facts.above(facts.intensity_bound(), 4),
+    "bound.jump": lambda: facts.above(facts.jump()),
+    "configurations": lambda: str(len(CONFIGS)),
+    # of the records
+    "cases": lambda: str(len(_record("stability")["rows"])),
+    "power.n20": lambda: f"{_power_error(20):.2g}",
+    "power.amm": lambda: f"{_record('stability')['amm_2012_at_20']:g}",
+    "front": _front,
+    "clocks.stated": _unrouted,
+    "clocks.routed": lambda: str(len(_clocks())),
+    "clocks.shared": lambda: str(len(_shared_clocks())),
+    "clocks.shared-low": lambda: f"{min(_shared_clocks()):.0f}",
+    "clocks.shared-high": lambda: f"{max(_shared_clocks()):.0f}",
+    "clocks.inferred": _inferred,
+    "clocks.quadratic-low": lambda: f"{min(_quadratic_clocks()):.0f}",
+    "clocks.quadratic-high": lambda: f"{max(_quadratic_clocks()):.0f}",
+    "highlight.low": lambda: f"{min(_highlights()):.0f}",
+    "highlight.high": lambda: f"{max(_highlights()):.0f}",
+}

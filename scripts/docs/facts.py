@@ -52,8 +52,7 @@ def diagram() -> str:
     """The blocks in the order of the data, with their latencies in cycles."""
     cycles = latencies()
     head = (
-        (" spans ─► ", ""), ("span_walker", "1"), (" ─► ", ""),
-        ("linear_interpolator ×3", "beside it"), (" ─► ", ""),
+        (" spans ─► ", " cycles:"), ("span_walker, linear_interpolator ×3", "1"), (" ─► ", ""),
         ("normalizer", f"{cycles['normalizer']}"), (" ─► ", ""),
         ("shading_unit", f"{cycles['shading_unit']}"), (" ─► ", ""), ("pixel_fifo", "2"),
         (" ─► pixels", ""),
@@ -62,7 +61,7 @@ def diagram() -> str:
     below = "".join(number.center(len(name)) for name, number in head).rstrip()
     rest = cycles["normalizer"] - cycles["align"] - cycles["inverse_sqrt_linear"]
     lines = [
-        names, below + "   cycles", "",
+        names, below, "",
         f" normalizer     align to the largest component ({cycles['align']}) · "
         f"inverse_sqrt_linear ({cycles['inverse_sqrt_linear']}) ·",
         f"                squares, sum, scale, round ({rest})",

@@ -484,7 +484,8 @@ def provenance() -> str:
     rows = []
     for path in sorted(recorded.FOLDER.glob("*.json")):
         record = recorded.load(path.stem)
-        assert record
+        if record is None or "figures" not in record:  # the tests' durations
+            continue
         tools = ", ".join(f"{name} {version}" for name, version in record["tools"].items())
         rows.append((path.stem, f"`{record['command']}`", tools, record["date"], record["commit"]))
     return markdown(("record", "command", "tools", "date", "commit"), rows, left=5)
