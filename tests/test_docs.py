@@ -143,9 +143,8 @@ def test_make_targets_and_their_variables_exist(page):
     makefile = (PACKAGE / "Makefile").read_text()
     targets = set(re.findall(r"^([a-z][\w-]*):", makefile, re.MULTILINE))
     variables = dict(re.findall(r"^variables_([\w-]+) := (.*)$", makefile, re.MULTILINE))
-    for command in re.findall(
-        r"(?:`|^)make ([a-z][\w-]*(?: [A-Z_]+=\S*)*)", page.read_text(), re.M
-    ):
+    calls = re.compile(r"(?:`|^)make ([a-z][\w-]*(?: [A-Z_]+=[^\s`]*)*)", re.MULTILINE)
+    for command in calls.findall(page.read_text()):
         target, *given = command.split(" ")
         assert target in targets, f"make {command}"
         for setting in given:

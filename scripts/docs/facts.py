@@ -52,7 +52,7 @@ def diagram() -> str:
     """The blocks in the order of the data, with their latencies in cycles."""
     cycles = latencies()
     head = (
-        (" spans ─► ", " cycles:"), ("span_walker, linear_interpolator ×3", "1"), (" ─► ", ""),
+        (" spans ─► ", " cycles:"), ("span_walker, interpolators ×3", "1"), (" ─► ", ""),
         ("normalizer", f"{cycles['normalizer']}"), (" ─► ", ""),
         ("shading_unit", f"{cycles['shading_unit']}"), (" ─► ", ""), ("pixel_fifo", "2"),
         (" ─► pixels", ""),
@@ -67,8 +67,8 @@ def diagram() -> str:
         f"                squares, sum, scale, round ({rest})",
         f" shading_unit   reflection ({cycles['reflection']}): 1 − cos(s) · "
         f"specular_power_tables ({cycles['specular_power_tables']}): cos(s)^n ·",
-        f"                beside it specular_weight ({cycles['specular_weight']}): W(i) · "
-        f"colour_channel ×3 ({cycles['colour_channel']}): eq. (3), clamp, code",
+        f"                colour_channel ×3 ({cycles['colour_channel']}): eq. (3), clamp, code;",
+        f"                in parallel: specular_weight ({cycles['specular_weight']}): W(i)",
     ]  # fmt: skip
     return "```text\n" + "\n".join(lines) + "\n```"
 
@@ -77,6 +77,8 @@ def latency_table() -> str:
     """Every block with a latency of its own in the default configuration."""
     used = modules()
     rows = [(f"`{block}`", str(n)) for block, n in latencies().items() if block in used]
+    pixel = latencies()["pixel"]
+    rows.append(("`PHONG_PIXEL_LATENCY`: from an interpolated normal to its colour", str(pixel)))
     rows.append(("from an accepted span to its first pixel", str(latency("first_pixel"))))
     return markdown(("block", "latency, cycles"), rows)
 
