@@ -9,7 +9,7 @@ from typing import Any
 from phong75.model.config import TECHNIQUES
 from phong75.model.studies.methods import CONFIGS
 from phong75.scripts import recorded
-from phong75.scripts.docs import facts, tables
+from phong75.scripts.docs import commands, facts, tables
 
 #: Tables that change with date and commit alone: filled, and not compared.
 UNCOMPARED = ("provenance",)
@@ -147,6 +147,8 @@ TABLES: dict[str, Callable[[], str]] = {
     "powers": lambda: tables.powers(_record("stability")["powers"]),
     "pruning": lambda: tables.pruning(_record("prune")["builds"]),
     "pruning-bars": lambda: tables.pruning_bars(_record("prune")["builds"]),
+    "commands": commands.commands,
+    "targets": commands.targets,
     "provenance": tables.provenance,
 }
 
