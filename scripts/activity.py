@@ -21,7 +21,7 @@ from phong75.model.config import DEFAULT as CONFIG
 from phong75.model.config import Config
 from phong75.model.frame import Frame
 from phong75.model.front.scene import bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.scripts import recorded
 from phong75.sim import design
 from phong75.sim.build import Bench

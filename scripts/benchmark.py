@@ -25,11 +25,11 @@ from phong75.model.config import DEFAULT as CONFIG
 from phong75.model.config import Config
 from phong75.model.frame import Frame
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
 from phong75.model.registers import writes
+from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import pack, record_bits, span_fields
-from phong75.model.twin.core.span_walker import span_walker
-from phong75.model.twin.phong_pipeline import BLOCK, interpolate, shade
+from phong75.model.twin.core.phong_unit import interpolate, shade
+from phong75.model.twin.core.span_walker import BLOCK, span_walker
 from phong75.scripts import recorded
 from phong75.sim.build import Bench
 from phong75.sim.design import BUILD

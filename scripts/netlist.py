@@ -19,7 +19,7 @@ from phong75.model import twin
 from phong75.model.analysis import metrics
 from phong75.model.config import DEFAULT, Config
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.model.studies import corner_cases
 from phong75.scripts import recorded
 from phong75.scripts.synthesis.ecp5 import SynthesisError, synthesize

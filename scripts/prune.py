@@ -32,11 +32,11 @@ from rich.table import Table
 
 from phong75.model import twin
 from phong75.model.analysis import metrics
-from phong75.model.analysis.pruning import BY_HAND, FEATURES, Row, prune
+from phong75.model.analysis.pruning import BY_HAND, FEATURES, FeatureRow, prune
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import Frame, InputError
 from phong75.model.front.scene import bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.scripts import recorded
 from phong75.scripts.activity import toggles_per_pixel
 from phong75.scripts.benchmark import bare, repeated, write_bare
@@ -220,7 +220,7 @@ class _Parser(argparse.ArgumentParser):
         raise InputError(message)
 
 
-def feature_table(scene: str, rows: list[Row], config: Config) -> Table:
+def feature_table(scene: str, rows: list[FeatureRow], config: Config) -> Table:
     """`rows` of `scene` as a table for the terminal."""
     before, after = (latencies(c)["pixel"] for c in (DEFAULT, config))
     out = Table(title=f"{scene}: latency {before} -> {after} clocks", title_style="bold")

@@ -27,7 +27,7 @@ from phong75.model.analysis import error_budget, metrics, pictures, pruning, ref
 from phong75.model.config import DEFAULT, TECHNIQUES, Config
 from phong75.model.frame import InputError
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.sim.build import BuildError
 from phong75.sim.design import BUILD
 from phong75.sim.frame.locate import locate

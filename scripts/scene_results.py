@@ -16,7 +16,7 @@ from phong75.model import twin
 from phong75.model.analysis import error_budget, metrics, reference
 from phong75.model.config import DEFAULT as CONFIG
 from phong75.model.front.scene import bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.scripts import recorded
 from phong75.scripts.docs import tables
 from phong75.sim.design import BUILD

@@ -17,7 +17,7 @@ from phong75.model.analysis.pruning import prune
 from phong75.model.config import DEFAULT, TECHNIQUES, Config
 from phong75.model.frame import InputError
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.scripts import recorded
 from phong75.scripts.run import Steps
 from phong75.scripts.synthesis import ecp5

@@ -16,7 +16,7 @@ from pathlib import Path
 from phong75.model.config import DEFAULT as CONFIG
 from phong75.model.frame import InputError
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.sim import design
 from phong75.sim.build import Bench, BuildError
 from phong75.sim.design import BUILD

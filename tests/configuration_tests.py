@@ -20,10 +20,12 @@ from phong75.model.config import DEFAULT as C
 from phong75.model.config import TECHNIQUES, Config
 from phong75.model.frame import Frame
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
 from phong75.model.registers import writes
+from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import illegal_spans
 from phong75.model.studies.methods import CONFIGS
+from phong75.model.twin.core.register_map import unsupported_write, vanishing_exponent
+from phong75.model.twin.pruning.span_guard import span_guard
 from phong75.sim.build import Bench
 from phong75.sim.frame.run_frame import Job, simulate_jobs
 from phong75.sim.latency import latencies
@@ -68,7 +70,7 @@ def tables_only(frame, rng):
 
 
 def sharp(frame, rng):
-    least = pruning.vanishing_exponent(C)
+    least = vanishing_exponent(C)
     n = rng.integers(least, 128 * C.exponent.one, C.materials)
     frame.materials.exponent[:] = n
     frame.materials.exponent[:3] = least, least + 1, C.exponent.one
@@ -217,8 +219,8 @@ class Trial:
     def _expected(self, job: Job, latency: int) -> tuple:
         config, frame = self.config, job.frame
         words = writes(frame, config) if job.writes is None else job.writes
-        odd = pruning.unsupported_spans(frame, config)
-        other = sum(pruning.unsupported_write(*word, config) for word in words)
+        odd = span_guard(frame.spans, config)
+        other = sum(unsupported_write(*word, config) for word in words)
         counters = {
             "complete": True,
             "extra_pixels": 0,
@@ -303,7 +305,7 @@ def odd_writes(frame: Frame, config: Config, seed: int) -> list[tuple[int, int]]
     supports: those of `frame`, and others."""
     rng = np.random.default_rng(seed)
     kind = 1 << (C.material_bits + C.weight_index_bits)
-    one, vanishes = C.exponent.one, pruning.vanishing_exponent(C)
+    one, vanishes = C.exponent.one, vanishing_exponent(C)
     values = [0, 1, 2, 3, one, one - 1, one + 1, vanishes, vanishes - 1, vanishes + 1]
     constants = (getattr(config, feature) for feature in pruning.FEATURES)
     mask = (1 << C.coefficient.bits + 1) - 1

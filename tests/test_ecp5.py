@@ -10,7 +10,7 @@ import pytest
 
 from phong75.model.config import DEFAULT as C
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.model.twin import render
 from phong75.scripts import synth
 from phong75.scripts.synthesis import ecp5 as synthesis

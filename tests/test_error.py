@@ -16,6 +16,7 @@ from phong75.model.twin import render
 from phong75.model.twin.core.inverse_sqrt import inverse_sqrt
 from phong75.model.twin.core.inverse_sqrt_linear import inverse_sqrt_linear
 from phong75.model.twin.core.normalizer import normalizer
+from phong75.model.twin.core.phong_unit import shade
 from phong75.model.twin.core.reflection import reflection
 from phong75.model.twin.core.specular_power_tables import specular_power_tables
 from phong75.model.twin.core.specular_weight import specular_weight
@@ -24,7 +25,6 @@ from phong75.model.twin.methods.quadratic_normalizer import quadratic_normalizer
 from phong75.model.twin.methods.quadratic_unit import interpolate
 from phong75.model.twin.methods.specular_power_schlick import specular_power_schlick
 from phong75.model.twin.methods.specular_power_squaring import specular_power_squaring
-from phong75.model.twin.phong_pipeline import shade
 
 RNG = np.random.default_rng(75)
 ANGLES = (0.0, 0.3, 1.0, np.pi / 2, 2.5, 3.1, np.pi)

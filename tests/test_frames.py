@@ -9,7 +9,7 @@ from phong75.model import twin
 from phong75.model.analysis import metrics
 from phong75.model.config import DEFAULT as C
 from phong75.model.front.scene import bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.scripts import recorded, scene_results
 from phong75.sim import design
 from phong75.sim.build import Bench

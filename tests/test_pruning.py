@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 
 import numpy as np
 import pytest
@@ -10,12 +11,18 @@ import pytest
 from phong75.model import twin
 from phong75.model.analysis import metrics, pruning
 from phong75.model.config import DEFAULT as C
-from phong75.model.config import digits, levels
 from phong75.model.frame import Frame, MaterialTable
 from phong75.model.front.scene import bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import front_end
 from phong75.model.registers import writes
+from phong75.model.scene_to_frame import front_end
+from phong75.model.twin.core.register_map import unsupported_write, vanishing_exponent
 from phong75.model.twin.core.specular_power_tables import specular_power_tables
+from phong75.model.twin.pruning.constant_multiplier import (
+    constant_multiplier,
+    levels,
+    signed_digits,
+)
+from phong75.model.twin.pruning.span_guard import span_guard
 from phong75.scripts import prune, recorded
 from phong75.scripts.docs import tables
 from phong75.sim.build import Bench
@@ -97,13 +104,14 @@ def test_powers_of_large_exponents_vanish_below_one_half():
     """All versines from 1/2 on, at the smallest exponent that leaves the octaves out, and not one
     below it."""
     v = np.arange(C.versine.one // 2, C.versine.max + 1)
-    least = pruning.vanishing_exponent(C)
+    least = vanishing_exponent(C)
     assert not specular_power_tables(v, np.full(len(v), least), C).any()
     assert specular_power_tables(v[:1], np.array([least - C.exponent.one]), C).any()
 
 
 def test_digits_of_constants():
     """Canonical signed digits, against the definition."""
+    word = np.arange(-5, 6)
     for constant in [*range(300), 26214, 131071, 2**18 - 1, 2**17 + 1]:
         rest, count = constant, 0
         while rest:
@@ -111,8 +119,11 @@ def test_digits_of_constants():
                 digit = 2 - rest % 4
                 rest, count = rest - digit, count + 1
             rest //= 2
-        assert digits(constant) == count, constant
+        digits = signed_digits(constant)
+        assert len(digits) == count, constant
+        assert all(b - a > 1 for (_, a), (_, b) in itertools.pairwise(digits)), constant
         assert 2 ** levels(constant) >= count
+        assert constant_multiplier(word, constant).tolist() == (constant * word).tolist()
 
 
 # -- pixels ----------------------------------------------------------------------------------------
@@ -166,7 +177,7 @@ def test_a_sharp_power_is_the_same_without_octaves():
     """Every versine, at the smallest exponent that leaves the octaves out."""
     without_octaves = dataclasses.replace(C, log_octaves=False)
     v = np.arange(C.versine.max + 1)
-    n = np.full(len(v), pruning.vanishing_exponent(C))
+    n = np.full(len(v), vanishing_exponent(C))
     assert np.array_equal(
         specular_power_tables(v, n, C), specular_power_tables(v, n, without_octaves)
     )
@@ -216,13 +227,13 @@ def test_what_does_not_fit_is_flagged():
 def test_spans_and_writes_that_do_not_fit_are_known():
     """What the trials of tests/test_trials.py count in the RTL is there to be counted."""
     fit, config = narrow()
-    assert not pruning.unsupported_spans(fit, config).any()
-    bad = pruning.unsupported_spans(misfits(fit, SEED), config)
+    assert not span_guard(fit.spans, config).any()
+    bad = span_guard(misfits(fit, SEED).spans, config)
     assert 20 < bad.sum() < len(bad)
     for name in ("specular", "constant_exponent", "two_sided", "channels"):
         build = trial(name)
         words = build.jobs[-1].writes
-        flagged = sum(pruning.unsupported_write(*word, build.config) for word in words)
+        flagged = sum(unsupported_write(*word, build.config) for word in words)
         assert 0 < flagged < len(words) - 100, name
 
 

@@ -10,7 +10,7 @@ from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import InputError
 from phong75.model.front.camera import FILL
 from phong75.model.front.scene import MAX_TESSELLATION, Material, bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 
 MINIMAL = '[[objects]]\nshape = "sphere"\nsegments = 8\nrings = 4\n'
 

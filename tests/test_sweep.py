@@ -13,8 +13,8 @@ from phong75.model.analysis import error_budget
 from phong75.model.config import DEFAULT
 from phong75.model.frame import SPAN_DTYPE, InputError
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
 from phong75.model.quadratic_spans import MARGIN_BITS, coefficients
+from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import read_spans, write_spans
 from phong75.model.studies import charts
 from phong75.model.studies.methods import CONFIGS, of_width, points

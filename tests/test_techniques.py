@@ -14,8 +14,8 @@ from phong75.model.frame import InputError
 from phong75.model.front.camera import light_frame
 from phong75.model.front.mesh import apply_matrix, face_normals
 from phong75.model.front.scene import bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import front_end
-from phong75.model.twin.phong_pipeline import shade
+from phong75.model.scene_to_frame import front_end
+from phong75.model.twin.core.phong_unit import shade
 from phong75.model.vertex_shading import exact_intensities, intensities
 from phong75.scripts import scene_results
 from phong75.sim import design

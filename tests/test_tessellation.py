@@ -9,7 +9,7 @@ import pytest
 from phong75.model.config import TECHNIQUES
 from phong75.model.front.interpolation import interpolate_at
 from phong75.model.front.mesh import normalize
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.model.studies import shading_artifacts, tessellation
 from phong75.model.studies.surfaces import SURFACES
 from phong75.model.twin import render

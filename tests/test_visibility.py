@@ -14,9 +14,10 @@ from phong75.model.front.camera import Camera, light_frame, view_axes
 from phong75.model.front.interpolation import interpolate, interpolate_at, scan_line_weights
 from phong75.model.front.mesh import Mesh
 from phong75.model.front.scene import Material, Scene, SceneObject, bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import encode, front_end
+from phong75.model.front.scene_to_spans import encode
 from phong75.model.front.shapes import sphere
 from phong75.model.front.visibility import GRID, Segments, Triangles
+from phong75.model.scene_to_frame import front_end
 
 WIDTH, HEIGHT = 24, 20
 SMALL = (96, 72)

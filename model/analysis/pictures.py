@@ -9,6 +9,7 @@ import numpy as np
 from PIL import Image
 
 from phong75.model.frame import Frame
+from phong75.model.twin import Pixels
 
 _DPI = 100
 _MARGIN = (70, 90, 55, 45)  # left, right, bottom, top of the error map, in dots
@@ -78,3 +79,11 @@ def _place(picture, x, y, values):
     inside = (x >= 0) & (x < picture.shape[1]) & (y >= 0) & (y < picture.shape[0])
     picture[y[inside], x[inside]] = np.asarray(values)[inside]
     return picture
+
+
+def picture(frame: Frame, pixels: Pixels) -> Image.Image:
+    """The picture of `pixels` of `frame` as a PIL image (RGB), which a notebook shows as it is.
+
+    pixels: of `render`, or of a simulation.
+    """
+    return Image.fromarray(canvas(frame, pixels.x, pixels.y, pixels.rgb))

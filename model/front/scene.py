@@ -117,7 +117,7 @@ class SceneObject:
     material: int
 
 
-@dataclass
+@dataclass(repr=False)
 class Scene:
     """A picture to make. background: 3 reals in [0, 1]. light: unit vector towards the light,
     scene axes. two_sided: light both sides of surfaces and cull none. interpolation: "linear"
@@ -133,6 +133,13 @@ class Scene:
     interpolation: str
     objects: list[SceneObject]
     materials: list[Material] = field(default_factory=lambda: [Material()])
+
+    def __repr__(self) -> str:
+        triangles = sum(len(item.mesh.faces) for item in self.objects)
+        return (
+            f"Scene({self.name}, {self.width}x{self.height}, objects: {len(self.objects)}, "
+            f"triangles: {triangles}, materials: {len(self.materials)})"
+        )
 
 
 def bundled_scenes() -> list[str]:

@@ -19,8 +19,8 @@ import numpy as np
 from phong75.model.analysis import error_budget, reference
 from phong75.model.config import DEFAULT as C
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
+from phong75.model.twin.core.phong_unit import shade
 from phong75.model.twin.core.specular_power_tables import specular_power_tables
-from phong75.model.twin.phong_pipeline import shade
 
 KEPT = Path(__file__).parent.parent / "data" / "adversarial.json"
 LIMITS = (10, 32, 128)
@@ -105,7 +105,7 @@ def evaluate(inputs: Inputs):
     trace: dict = {}
     codes = shade(inputs.normal, material, frame, C, trace)[0]
     white = (1 << C.colour_bits) - 1
-    given = white * C.intensity.real(trace["shading_unit.intensity"][0])
+    given = white * C.intensity.real(trace["colour_channel.intensity"][0])
     real = C.coefficient.real
     exact = reference.shade(
         inputs.normal.T.astype(float), real(table.ambient), real(table.diffuse), real(points),

@@ -20,8 +20,9 @@ from phong75.model.front import visibility
 from phong75.model.front.camera import Camera
 from phong75.model.front.mesh import Mesh, normalize
 from phong75.model.front.scene import Material, Scene, SceneObject
-from phong75.model.front.scene_to_spans import encode, front_end
+from phong75.model.front.scene_to_spans import encode
 from phong75.model.front.visibility import GRID
+from phong75.model.scene_to_frame import front_end
 from phong75.model.twin import Pixels
 
 #: The exponents that the cases use, and the angle from light to eye where it does not matter.

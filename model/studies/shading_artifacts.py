@@ -19,7 +19,8 @@ from phong75.model.front.camera import Camera
 from phong75.model.front.interpolation import interpolate_at
 from phong75.model.front.mesh import Mesh
 from phong75.model.front.scene import Material, Scene, SceneObject
-from phong75.model.front.scene_to_spans import FrontEnd, front_end
+from phong75.model.front.scene_to_spans import FrontEnd
+from phong75.model.scene_to_frame import front_end
 from phong75.model.studies import tessellation
 from phong75.model.studies.surfaces import SURFACES
 

@@ -19,8 +19,8 @@ from phong75.model.front import scene_to_spans, visibility
 from phong75.model.front.camera import Camera, light_frame, view_axes
 from phong75.model.front.mesh import Mesh, apply_matrix, normalize
 from phong75.model.front.scene import Material, Scene, SceneObject
-from phong75.model.front.scene_to_spans import front_end
 from phong75.model.front.visibility import GRID
+from phong75.model.scene_to_frame import front_end
 from phong75.model.studies.surfaces import SURFACES, Surface
 from phong75.model.twin import render
 

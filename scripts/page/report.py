@@ -26,7 +26,7 @@ import plotly.graph_objects as go
 from plotly.offline import get_plotlyjs
 
 from phong75.model.analysis import error_budget
-from phong75.model.analysis.pruning import Row, prune
+from phong75.model.analysis.pruning import FeatureRow, prune
 from phong75.model.analysis.run_report import SCHEMA, failures
 from phong75.model.config import DEFAULT as C
 from phong75.model.config import TECHNIQUES
@@ -96,7 +96,7 @@ class SceneResult:
     error_map: str
     failures: list[str]
     budget: list[error_budget.Row] = field(default_factory=list)
-    features: dict[str, Row] = field(default_factory=dict)
+    features: dict[str, FeatureRow] = field(default_factory=dict)
 
 
 def data_uri(path: Path) -> str:

@@ -16,7 +16,7 @@ from rich.table import Table
 from phong75.model import twin
 from phong75.model.analysis import metrics
 from phong75.model.config import TECHNIQUES
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.model.studies import charts, shading_artifacts, tessellation
 from phong75.model.studies.surfaces import SURFACES
 from phong75.sim.design import BUILD

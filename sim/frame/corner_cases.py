@@ -12,7 +12,7 @@ from phong75.model.analysis import error_budget, metrics
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import Frame
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import illegal_spans
 from phong75.model.studies import corner_cases
 from phong75.model.studies.corner_cases import Case

@@ -15,9 +15,9 @@ from phong75.model.config import DEFAULT, TECHNIQUES, Config
 from phong75.model.frame import Frame
 from phong75.model.spans import read_spans, write_spans
 from phong75.model.twin.core.normalizer import normalizer
+from phong75.model.twin.core.phong_unit import interpolate
 from phong75.model.twin.core.shading_unit import shading_unit
 from phong75.model.twin.core.span_walker import span_walker
-from phong75.model.twin.phong_pipeline import interpolate
 from phong75.model.twin.techniques.intensity_code import intensity_code
 from phong75.sim.build import Bench
 from phong75.sim.design import BUILD

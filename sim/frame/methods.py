@@ -19,8 +19,8 @@ from phong75.model.analysis import error_budget, metrics, reference
 from phong75.model.config import Config
 from phong75.model.frame import Frame
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
 from phong75.model.registers import writes
+from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import pack
 from phong75.model.studies.methods import FRAMES, Point
 from phong75.model.twin import Pixels

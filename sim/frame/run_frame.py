@@ -26,7 +26,7 @@ class SimulationError(Exception):
     """The simulator did not come to its end; the message holds the end of its log."""
 
 
-@dataclass
+@dataclass(repr=False)
 class SimResult:
     """What a frame did in simulation; cycles as counted there (see sim/frame_bench.v).
 
@@ -49,6 +49,9 @@ class SimResult:
     simulate_s: float
     zero_normals: int = 0
     unsupported: int = 0
+
+    def __repr__(self) -> str:
+        return f"SimResult({self.pixels}, cycles: {self.cycles}, complete: {self.complete})"
 
 
 @dataclass

@@ -16,8 +16,8 @@ from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, FallingEdge
 
 from phong75.model.config import DEFAULT as C
-from phong75.model.config import levels
 from phong75.model.registers import address_bits, word_bits
+from phong75.model.twin.pruning.constant_multiplier import levels
 from phong75.sim.module.unit_tb import THIN
 
 TOP = "primitives_bench"

@@ -43,7 +43,6 @@ class Module:
     held: tuple[tuple[str, int | str], ...] = ()
     children: tuple[Child, ...] = ()
     late: dict[str, str] = field(default_factory=dict)  # inputs wanted some clocks later
-    tests: str = "datapath"  # the file of tests/modules/ that tests it
 
 
 L = "`PHONG_{}_LATENCY"
@@ -99,7 +98,6 @@ MODULES = {
             Stage("inverse_sqrt_quadratic.refine", ("line_p9",), _sum(1, ROM, MUL, 1, MUL, 1)),
             Stage("inverse_sqrt_quadratic.round", ("root",), L.format("INVERSE_SQRT_QUADRATIC")),
         ),
-        tests="methods",
     ),
     "newton_step": Module(
         ("x", "y"),
@@ -108,7 +106,6 @@ MODULES = {
             Stage("newton_step.error", ("+error_p7",), _sum(MUL, ROUND, MUL, 1)),
             Stage("newton_step.better", ("better",), L.format("NEWTON_STEP")),
         ),
-        tests="methods",
     ),
     "inverse_sqrt_iterated": Module(
         ("operand",),
@@ -118,7 +115,6 @@ MODULES = {
                 "inverse_sqrt_iterated.steps", ("root",), L.format("INVERSE_SQRT_ITERATED")
             ),
         ),
-        tests="methods",
     ),
     "unnormalized": Module(
         ("x", "y", "z"),
@@ -130,7 +126,6 @@ MODULES = {
             Stage("unnormalized.lit", ("lit",), L.format("UNNORMALIZED")),
         ),
         held=(("two_sided", 1),),
-        tests="methods",
     ),
     "normalizer": Module(
         ("x", "y", "z"),
@@ -211,7 +206,6 @@ MODULES = {
             Stage("specular_power_squaring.last", ("power",), L.format("SPECULAR_POWER_SQUARING")),
         ),
         late={"exponent": _sum(L.format("SPECULAR_COSINE"), -1)},
-        tests="methods",
     ),
     "specular_power_schlick": Module(
         ("versine", "exponent"),
@@ -226,12 +220,10 @@ MODULES = {
                 "specular_power_schlick.quotient", ("power",), L.format("SPECULAR_POWER_SCHLICK")
             ),
         ),
-        tests="methods",
     ),
     "quadratic_interpolator": Module(
         ("advance", "load", "start", "first", "second"),
         (Stage("quadratic_interpolator", ("+value",), "1"),),
-        tests="methods",
     ),
     "quadratic_normalizer": Module(
         ("z", "square", "cross_square"),
@@ -252,7 +244,6 @@ MODULES = {
             ),
         ),
         held=(("two_sided", 1),),
-        tests="methods",
     ),
     "specular_weight": Module(
         ("cosine", "material"),
@@ -268,11 +259,11 @@ MODULES = {
         ("unit_x", "unit_y", "unit_z", "cosine", "lit", "material"),
         (
             Stage(
-                "shading_unit.intensity",
+                "colour_channel.intensity",
                 tuple(f"gen_channel[{c}].u_channel.intensity_p5" for c in range(3)),
                 _sum(L.format("SHADING_UNIT"), -2),
             ),
-            Stage("shading_unit.code", ("red", "green", "blue"), L.format("SHADING_UNIT")),
+            Stage("colour_channel.code", ("red", "green", "blue"), L.format("SHADING_UNIT")),
         ),
         held=(
             ("half_x", "`PHONG_HALF_VECTOR_BITS"), ("half_z", "`PHONG_HALF_VECTOR_BITS"),

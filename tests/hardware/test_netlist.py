@@ -5,7 +5,7 @@ import json
 from phong75.model import twin
 from phong75.model.analysis import metrics
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.scripts import netlist, recorded
 from phong75.sim.design import BUILD
 from phong75.sim.frame.run_frame import Job, simulate_jobs

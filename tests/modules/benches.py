@@ -7,6 +7,7 @@ from pathlib import Path
 
 from phong75.model.config import DEFAULT, TECHNIQUES, Config
 from phong75.model.studies.methods import CONFIGS
+from phong75.sim.design import module_file
 from phong75.sim.module import primitives
 from phong75.sim.module.units import MODULES, bench_source
 
@@ -49,8 +50,10 @@ def module_bench(name: str, only: tuple[str, ...] = ()) -> ModuleBench:
     module, _, config = name.partition("@")
     if module in MODULES:
         top, text = bench_source(module)
-        tests = f"tests.modules.{MODULES[module].tests}"
-        return ModuleBench(name, top, tests, {f"{top}.v": text}, CONFIGS[config or "default"])
+        tests = "methods" if module_file(module).parent.name == "methods" else "datapath"
+        return ModuleBench(
+            name, top, f"tests.modules.{tests}", {f"{top}.v": text}, CONFIGS[config or "default"]
+        )
     if name in _OLDER:
         tests = "tests.modules.phong_pipeline"
         return ModuleBench(name, "pipeline_bench", tests, config=TECHNIQUES[name])

@@ -13,6 +13,7 @@ import numpy as np
 
 from phong75.model.config import DEFAULT as C
 from phong75.model.registers import FIELDS, address_bits, word_bits
+from phong75.model.twin.pruning import normal_hold as twin
 from phong75.sim.module.primitives import (
     DEFAULTS,
     INSTANCES,
@@ -201,12 +202,11 @@ async def normal_hold(dut):
     rng = np.random.default_rng(SEED)
     x, y, z = (_corners(rng, C.normal.bits) for _ in range(3))
     two_sided, valid = rng.random(RANDOM) < 0.3, rng.random(RANDOM) < 0.5
-    shown = two_sided | (z >> (C.normal.bits - 1) == 0)
-    taken = valid & shown
-    taken[0] = valid[0] = two_sided[0] = shown[0] = True
-    last = np.maximum.accumulate(np.where(taken, np.arange(RANDOM), 0))
-    expected = {"held_valid": valid, "shown": shown}
-    expected |= {"held_x": x[last], "held_y": y[last], "held_z": z[last]}
+    valid[0] = two_sided[0] = True
+    normal = np.stack([_signed(word, C.normal.bits) for word in (x, y, z)])
+    held = twin.normal_hold(normal[:, valid], two_sided[valid])[0][:, np.cumsum(valid) - 1]
+    expected = {"held_valid": valid, "shown": two_sided | (normal[2] >= 0)}
+    expected |= dict(zip(("held_x", "held_y", "held_z"), held, strict=True))
     inputs = x, y, z << 2 | valid << 1 | two_sided
     await PrimitivesTB(dut).check("hold", inputs, expected, NOTE)
 
