@@ -53,7 +53,7 @@ def tree(tmp_path) -> Path:
     return tmp_path
 
 
-def tests_of_the_guide(tree: Path) -> subprocess.CompletedProcess:
+def run_the_tests(tree: Path) -> subprocess.CompletedProcess:
     """What the last step of the guide runs, in `tree`."""
     command = re.search(r"```sh\n\.venv/bin/python (-m pytest .*?)\n```", GUIDE.read_text())[1]
     return subprocess.run(
@@ -66,10 +66,10 @@ def test_the_guide_adds_a_module(tree):
     files = follow(GUIDE.read_text(), tree)
     named = [file for file in files if not file.startswith("tests/")]
     assert len(named) == 4 and "A module is named in four places" in GUIDE.read_text()
-    done = tests_of_the_guide(tree)
+    done = run_the_tests(tree)
     assert done.returncode == 0, done.stdout + done.stderr
     # The test that the guide adds can fail.
     module = tree / "rtl" / "methods" / "mean.v"
     module.write_text(module.read_text().replace("x + y", "x - y"))
-    broken = tests_of_the_guide(tree)
+    broken = run_the_tests(tree)
     assert broken.returncode == 1 and "module mean, stage mean.half" in broken.stdout

@@ -312,7 +312,7 @@ def _benches(file: str) -> list[str]:
     stem, _, suffix = file.rpartition(".")
     found = [
         f"{name}/{stem}" if (name, suffix) == ("primitives", "v") else name
-        for name in BENCHES[stem]
+        for name in BENCHES.get(stem, (stem,))  # its own testbench, where nothing else is named
     ]
     return list(dict.fromkeys(found))
 
