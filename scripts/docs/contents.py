@@ -143,7 +143,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "clocks": lambda: tables.clocks(_clocks()),
     "surfaces": lambda: tables.surfaces(_record("tessellation")),
     "error-families": lambda: tables.error_families(_record("stability")["errors"]),
-    "cases": lambda: tables.cases(_record("stability")["rows"]),
+    "cases": lambda: tables.cases(_record("stability")["rows"], facts.case_words()),
     "powers": lambda: tables.powers(_record("stability")["powers"]),
     "pruning": lambda: tables.pruning(_record("prune")["builds"]),
     "pruning-bars": lambda: tables.pruning_bars(_record("prune")["builds"]),

@@ -24,6 +24,7 @@ from phong75.model.config import DEFAULT as C
 from phong75.model.config import TECHNIQUES, Config, Format
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
 from phong75.model.front.scene import SHAPES
+from phong75.model.studies import corner_cases
 from phong75.model.studies.methods import points
 from phong75.scripts.docs.tables import markdown
 from phong75.sim.elaborate import instances
@@ -221,6 +222,20 @@ def proofs() -> str:
         for proof in PROOFS
     )
     return markdown(("proof", "claim", "size", "kind", "broken designs"), rows, left=4)
+
+
+#: The cases of `make stability` that are no frame of `corner_cases`: (what is extreme, expected).
+OTHER_CASES = {
+    "shared edges": ("random triangulations of rectangles", "every pixel once, no other"),
+    "cos(s)ⁿ alone": ("every code of 1 − cos(s), for several n", "within the derived bounds"),
+    "long run": ("random spans under random pauses and resets", "every pixel, in order"),
+}
+
+
+def case_words() -> dict[str, tuple[str, str]]:
+    """{corner case: (what is extreme, what is expected)}."""
+    words = {case.name: (case.extreme, case.expected) for case in corner_cases.cases()}
+    return words | OTHER_CASES
 
 
 # -- configurations --------------------------------------------------------------------------------

@@ -378,18 +378,18 @@ def error_families(rows: Iterable[dict[str, Any]]) -> str:
     return markdown(header, cells)
 
 
-def cases(rows: Iterable[dict[str, Any]]) -> str:
-    """Every corner case: what is expected, and what came out of the RTL."""
+def cases(rows: Iterable[dict[str, Any]], words: dict[str, tuple[str, str]]) -> str:
+    """Every corner case, and what came out of the RTL. words: {case: (extreme, expected)}."""
     cells = (
-        (row["case"], row["extreme"], row["expected"],
+        (row["case"], *words.get(row["case"], ("", "")),
          DASH if row["pixels"] is None else grouped(row["pixels"]),
          number(row["max_lsb"], 3), number(row["bound_lsb"], 3),
-         DASH if row["mismatches"] is None else str(row["mismatches"]))
+         DASH if row["mismatches"] is None else str(row["mismatches"]), row["verdict"])
         for row in rows
     )  # fmt: skip
     header = (
         "case", "what is extreme", "expected", "pixels", "largest error, LSB", "bound, LSB",
-        "RTL ≠ model",
+        "RTL ≠ model", "verdict",
     )  # fmt: skip
     return markdown(header, ([cell.replace("|", "\\|") for cell in row] for row in cells), left=3)
 
