@@ -16,11 +16,28 @@ myst_heading_anchors = 3
 html_theme = "furo"
 html_title = f"Phong75 {release}"
 html_show_sphinx = False
+html_static_path = ["static"]
+html_css_files = ["page.css"]
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_preserve_defaults = True
+autodoc_class_signature = "separated"  # a configuration has dozens of fields
 
 _CODE = re.compile(r"`([^`]+)`")
+
+
+def _items(lines):
+    """Lines of a paragraph; of a list, one line per item, with an empty line before the first."""
+    found = []
+    for line in map(str.strip, lines):
+        item = line.startswith("- ")
+        if item and found and not found[-1].startswith("- "):
+            found.append("")
+        if not item and found and found[-1].startswith("- "):
+            found[-1] += f" {line}"
+        else:
+            found.append(line)
+    return found
 
 
 def plain_docstring(app, what, name, thing, options, lines):
@@ -39,8 +56,7 @@ def plain_docstring(app, what, name, thing, options, lines):
                 parts[k] = _CODE.sub(r"``\1``", part)
             else:
                 parts[k] = re.sub(r"([*|_\\])", r"\\\1", part)
-        # One paragraph per line that begins a new statement; continuation lines stay together.
-        blocks.append("\n".join(line.strip() for line in "".join(parts).splitlines()))
+        blocks.append("\n".join(_items("".join(parts).splitlines())))
     lines[:] = "\n\n".join(blocks).splitlines()
 
 

@@ -62,9 +62,10 @@ def test_a_changed_figure_is_noticed(tmp_path, monkeypatch):
     ("text", "message"),
     [
         ("<!-- table: none --> <!-- end -->", "nothing makes it"),
-        ("<!-- figure: one --> 1", "stands alone"),
+        ("a <!-- figure: one --> 1", "stands alone"),
         ("1 <!-- end -->", "stands alone"),
-        ("<!-- figure: one --> <!-- figure: one -->1<!-- end -->", "has no end"),
+        ("a <!-- figure: one --> <!-- figure: one -->1<!-- end -->", "has no end"),
+        ("a\n<!-- figure: one -->1<!-- end -->", "first on its line"),
     ],
 )
 def test_a_wrong_marker_is_an_error(text, message):

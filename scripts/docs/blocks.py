@@ -17,6 +17,8 @@ from phong75.sim.design import PACKAGE
 Maker = Callable[[], str]
 
 _MARKER = re.compile(r"<!-- (table|figure): ([\w.-]+) -->(.*?)<!-- end -->", re.DOTALL)
+#: Markdown would end the paragraph there and begin a block of HTML.
+_FIRST = re.compile(r"^\s*<!-- figure: [^>]* -->", re.MULTILINE)
 _ANY = re.compile(r"<!-- (?:table: [^>]*|figure: [^>]*|end) -->")
 
 
@@ -37,6 +39,8 @@ def fill(
 
     Raises MarkerError.
     """
+    if found := _FIRST.search(text):
+        raise MarkerError(f"{found[0].strip()} is the first on its line")
     makers = {"table": tables, "figure": figures}
     paired = 0
 
