@@ -23,7 +23,6 @@ from phong75.model.frame import Frame
 from phong75.model.front.scene import bundled_scenes, load_scene
 from phong75.model.scene_to_frame import front_end
 from phong75.scripts import recorded
-from phong75.scripts.recorded import Row
 from phong75.sim import design
 from phong75.sim.build import Bench
 from phong75.sim.coverage import points
@@ -72,21 +71,7 @@ def main() -> int:
         }  # fmt: skip
         table.add_row(scene, str(pixels), f"{toggles:.0f}", f"{held:.0f}")
     Console().print(table)
-    figure = ", ".join(f"{scene} {of['toggles_per_pixel']:.0f}" for scene, of in found.items())
-    held = ", ".join(f"{scene} {of['hold_unlit']:.0f}" for scene, of in found.items())
-    recorded.save(
-        "activity",
-        "make activity",
-        ("verilator",),
-        [
-            Row("register toggles a pixel, 640×480", figure, "registers only; not joules"),
-            Row(
-                "the same where pixels turned away from the light hold the datapath (`hold_unlit`)",
-                held,
-                "one clock and about 120 registers more; not in the default configuration",
-            ),
-        ],
-    )
+    recorded.save("activity", "make activity", ("verilator",), {"scenes": found})
     (BUILD / "activity.json").write_text(json.dumps(found, indent=2) + "\n")
     return 0
 

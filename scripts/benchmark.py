@@ -31,7 +31,6 @@ from phong75.model.spans import pack, record_bits, span_fields
 from phong75.model.twin.core.phong_unit import interpolate, shade
 from phong75.model.twin.core.span_walker import BLOCK, span_walker
 from phong75.scripts import recorded
-from phong75.scripts.recorded import Row
 from phong75.sim.build import Bench
 from phong75.sim.design import BUILD
 from phong75.sim.frame.run_frame import Job, simulate_jobs
@@ -127,10 +126,8 @@ def main() -> int:
     (BUILD / "bench.json").write_text(json.dumps(found, indent=2) + "\n")
     recorded.save(
         "bench", "make bench", ("verilator", "cocotb", "numpy"),
-        [Row("frames under cocotb against a bare Verilator loop",
-             f"{best['cocotb'] / best['bare']:.2f} of its clocks a second", "one machine"),
-         Row("the model, 640×480 lit pixels", f"{1 / seconds:.0f} frames a second on one core",
-             "one machine; pixel stages only")],
+        {"cocotb_to_bare": found["simulation"]["ratio"],
+         "model_frames_per_s": found["model"]["fps"]},
     )  # fmt: skip
     table = Table(title=f"{SCENE} {SIZE[0]}x{SIZE[1]}, best of {ROUNDS}")
     table.add_column("what")

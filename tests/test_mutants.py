@@ -6,6 +6,7 @@ import sys
 
 from phong75.sim import design
 from phong75.sim.design import PACKAGE
+from tests.campaigns import mutation
 from tests.campaigns.relevant_benches import BENCHES, relevant_benches
 
 SAMPLE = 8
@@ -40,3 +41,8 @@ def test_what_is_not_in_the_design_is_one_line():
     command = [sys.executable, "-m", "tests.campaigns.mutation", "--files", "nothing"]
     done = subprocess.run(command, cwd=PACKAGE, text=True, capture_output=True)
     assert done.returncode == 2 and done.stderr == "mutate: not in rtl/: nothing\n"
+
+
+def test_the_explained_mutants_exist():
+    files = [*design.sources(), *design.headers()]
+    assert set(mutation.explained()) <= {m.key for path in files for m in mutation.mutants(path)}

@@ -24,8 +24,8 @@ from phong75.model.twin.pruning.constant_multiplier import (
 )
 from phong75.model.twin.pruning.span_guard import span_guard
 from phong75.scripts import prune, recorded
+from phong75.scripts.docs import tables
 from phong75.sim.build import Bench
-from phong75.sim.design import PACKAGE
 from phong75.sim.elaborate import instances
 from phong75.sim.frame.run_frame import Job, simulate_jobs
 from phong75.sim.latency import latencies
@@ -252,13 +252,11 @@ def test_latency_falls():
 # -- the table -------------------------------------------------------------------------------------
 
 
-def test_the_readme_shows_the_last_measurement_of_these_builds():
-    """The table is that of the record, and the record is of the builds of today's analysis."""
-    record = recorded.load("prune")
-    assert prune.for_readme(record) in (PACKAGE / "README.md").read_text()
+def test_the_record_is_of_the_builds_of_todays_analysis():
+    builds = recorded.figures("prune")["builds"]
     today = {case.name: case for case in prune.cases()}
-    assert [found["name"] for found in record["table"]] == list(today)
-    for found in record["table"]:
+    assert [found["name"] for found in builds] == list(today)
+    for found in builds:
         config = today[found["name"]].config
         assert found["left_out"] == prune.left_out(config), f"{found['name']}: make prune SCENE=all"
         assert found["pruned"]["latency"] == latencies(config)["pixel"] + 3
@@ -268,7 +266,7 @@ def test_the_bars():
     """DSP multipliers: 8 for diffuse colour, 6 for grey, none for Gouraud and flat shading, and for
     the teapot a quarter fewer than in the full design; measured, and as it is elaborated. No
     pruned build simulates slower than the full one."""
-    rows = {found["name"]: found for found in recorded.load("prune")["table"]}
+    rows = {found["name"]: found for found in recorded.figures("prune")["builds"]}
     for name, found in rows.items():
         pruned, of_full = (found[key]["simulation_clocks_per_s"] for key in ("pruned", "full"))
         assert pruned >= of_full, name
@@ -286,13 +284,15 @@ def test_the_bars():
 
 
 def test_what_was_not_measured_is_a_dash():
-    found = dict.fromkeys(prune.COLUMNS, 3) | {"constant_multipliers": 0, "constant_lut_sites": 0}
-    pruned = found | {"constant_multipliers": 2, "constant_lut_sites": 70, "dsp": 1}
+    found = dict.fromkeys(tables.PRUNING, 3) | {"lut_sites": 3, "constant_multipliers": 0}
+    found["constant_lut_cells"] = 0
+    pruned = found | {"constant_multipliers": 2, "constant_lut_cells": 70, "dsp": 1}
     pruned["gate_equivalents"] = pruned["clock_mhz"] = None
-    cells = prune.row({"name": "a", "pruned": pruned, "full": found}).strip("| ").split(" | ")
+    cells = tables.pruning_row("a", pruned, found)
     assert cells[:4] == ["a", "1 (33 %)", "2, 70", "3 (100 %)"]
-    assert len(cells) == prune.HEADER.splitlines()[1].count("|") - 1
-    assert [k for k, cell in enumerate(cells) if cell == "-"] == [6, 8]
+    header = tables.pruning([{"name": "teapot", "pruned": pruned, "full": found}]).split("\n")[0]
+    assert len(cells) == header.count("|") - 1
+    assert [k for k, cell in enumerate(cells) if cell == tables.DASH] == [6, 8]
 
 
 @pytest.mark.parametrize("wrong", ["--gates=2", "--seeds=x", "--seeds=101", "--what"])

@@ -151,11 +151,9 @@ def cost_chart(rows: list[dict], path: Path) -> None:
     Writes `path`.png and .svg.
     """
     columns = [("multipliers of at most 18 x 18 bits", lambda row: row["multipliers"])]
-    if all(row["lut"] is not None for row in rows):
-        columns.append(
-            ("LUT sites: LUT4 + 2 per carry cell + 4 per LUT RAM", lambda row: row["lut"])
-        )
-    _figure(rows, columns, "Error against hardware (ECP5; logic by Yosys)", path)
+    if all(row["lut_sites"] is not None for row in rows):
+        columns.append(("LUT sites (nextpnr)", lambda row: row["lut_sites"]))
+    _figure(rows, columns, "Error against hardware (ECP5)", path)
 
 
 #: Names of the techniques in legends.

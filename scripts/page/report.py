@@ -40,6 +40,7 @@ from phong75.model.studies import methods, pareto, tessellation
 from phong75.model.studies.charts import TECHNIQUE_NAMES
 from phong75.scripts import recorded
 from phong75.scripts import run as run_scene
+from phong75.scripts.docs.tables import HardwareRow, hardware_rows
 from phong75.scripts.scene_results import SCHEMA as RESULTS
 from phong75.scripts.stability import SCHEMA as STABILITY
 from phong75.scripts.studies import artifact_runs
@@ -58,7 +59,7 @@ COLOURS = (
 #: Columns of the sweep's tables that can be axes, and their names.
 COSTS = {
     "frame_us": "run time of all frames, µs", "cycles": "cycles of all frames",
-    "dsp": "multipliers", "lut": "LUT sites", "ff": "flip-flops",
+    "dsp": "multipliers", "lut_sites": "LUT sites", "ff": "flip-flops",
     "simulate_s": "host: seconds of RTL simulation", "model_s": "host: seconds of the model",
 }  # fmt: skip
 ERRORS = {
@@ -308,7 +309,8 @@ def _hover(row: dict) -> str:
     ]  # fmt: skip
     if row.get("correctly_rounded") is not None:
         lines.append(f"{100 * row['correctly_rounded']:.3f} % correctly rounded")
-    hardware = [f"{row[n]:.0f} {n.upper()}" for n in ("dsp", "lut", "ff", "ebr") if row.get(n)]
+    units = {"dsp": "multipliers", "lut_sites": "LUT sites", "ff": "FF", "ebr": "block RAMs"}
+    hardware = [f"{row[n]:.0f} {unit}" for n, unit in units.items() if row.get(n)]
     if hardware:
         lines.append(", ".join(hardware))
     if row.get("longest_path"):
@@ -463,12 +465,11 @@ def stages_plot(scenes: list[SceneResult]) -> dict:
 # -- the page --------------------------------------------------------------------------------------
 
 
-def recorded_results(folder: Path) -> list[dict]:
-    """The records of the long runs, in the order of the README, then the others."""
-    records = {path.stem: load(path) for path in sorted(folder.glob("*.json"))}
-    records = {name: record for name, record in records.items() if record.get("rows")}
-    known = [name for name in recorded.NAMES if name in records]
-    return [records[name] for name in [*known, *[n for n in records if n not in known]]]
+def recorded_results() -> list[tuple[HardwareRow, dict]]:
+    """The lines of the long runs, each with its record."""
+    rows = hardware_rows()
+    records = {row.record: recorded.load(row.record) for row in rows}
+    return [(row, records[row.record]) for row in rows]
 
 
 def commit() -> str:
@@ -564,7 +565,7 @@ def precision_frames() -> list[str]:
     return texts
 
 
-def page(build: Path = BUILD, record_folder: Path = recorded.FOLDER) -> str:
+def page(build: Path = BUILD) -> str:
     """The page from what is below `build`. Raises InputError or OSError if a file is broken."""
     scenes = [s for name in bundled_scenes() if (s := scene_result(name, build))]
     results = load(build / "results.json", RESULTS)
@@ -592,7 +593,7 @@ def page(build: Path = BUILD, record_folder: Path = recorded.FOLDER) -> str:
         clock_note=clock_note(precision) if precision else "",
         precision_frames=precision_frames() if precision else [],
         tessellation=meshes, tessellation_size=size_text(tessellation.SIZE),
-        records=recorded_results(record_folder), costs=costs,
+        records=recorded_results(), costs=costs,
         errors=ERRORS,
         shapes=shapes, sizes=SIZES, surface_errors=surface_errors,
         arguments=paper_arguments(build / "sweep"), technique_names=[title(t) for t in TECHNIQUES],

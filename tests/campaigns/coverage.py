@@ -18,7 +18,6 @@ from rich.console import Console
 from rich.table import Table
 
 from phong75.scripts import recorded
-from phong75.scripts.recorded import Row
 from phong75.sim import design
 from phong75.sim.coverage import points
 from phong75.sim.design import BUILD
@@ -69,12 +68,10 @@ def main() -> int:
         share = f"{100 * covered / len(of_kind):.2f} %"
         table.add_row(kind, str(len(of_kind)), str(covered), share)
     Console().print(table)
-    share = {k: f"{100 * s['covered'] / s['points']:.4g} %" for k, s in summary.items()}
+    percent = {k: round(100 * s["covered"] / s["points"], 2) for k, s in summary.items()}
     recorded.save(
         "coverage", "make coverage", ("verilator",),
-        [Row("line and branch coverage of `rtl/`", f"{share['line']} and {share['branch']}; "
-             f"toggles {share['toggle']}", f"by module and frame tests and trials; {len(WAIVERS)} "
-             "lines waived, of a function that runs when the design is elaborated")],
+        {"percent": percent, "points": summary, "waived_lines": len(WAIVERS)},
     )  # fmt: skip
     for kind, name, line, what in sorted(missing):
         print(f"not covered: rtl/{name}:{line} ({kind} {what})", file=sys.stderr)

@@ -351,7 +351,7 @@ def _outcomes() -> dict[str, str]:
 def _record(everything: list[Mutant], known: dict[str, str]) -> None:
     """Put what was found into the record, file by file, where all mutants of a file have been
     tried; the other files' results stay."""
-    found = (recorded.load("mutate") or {}).get("files", {})
+    found = recorded.figures("mutate").get("files", {})
     found = {name: of for name, of in found.items() if name in {file.name for file in _files()}}
     outcomes = _outcomes()
     for file, kind in sorted({(m.file, m.kind) for m in everything}):
@@ -365,29 +365,7 @@ def _record(everything: list[Mutant], known: dict[str, str]) -> None:
             "survived": ours.count(""), "equivalent": len(all_of) - len(ours),
             "date": datetime.date.today().isoformat(), "commit": recorded.commit(),
         }  # fmt: skip
-    rows = []
-    for kind, what in (
-        ("operator", "operators of `rtl/`, each changed"),
-        ("constant", "hand-written constants of `rtl/`, each changed by one"),
-    ):
-        of = [kinds[kind] for kinds in found.values() if kind in kinds]
-        add = {
-            key: sum(entry[key] for entry in of)
-            for key in ("mutants", "refused", "killed", "survived", "equivalent")
-        }
-        if not of:
-            continue
-        when = sorted({(entry["date"], entry["commit"]) for entry in of})
-        rows.append(
-            recorded.Row(
-                what,
-                f"{add['mutants']} mutants: {add['killed']} fail a test, {add['refused']} the "
-                f"lint, {add['equivalent']} are the same hardware, {add['survived']} survive",
-                f"`tests/campaigns/equivalent_mutants.txt` says why; {len(of)} files, run on "
-                + ", ".join(f"{date} at {commit}" for date, commit in when),
-            )
-        )
-    recorded.save("mutate", "make mutate", ("verilator", "cocotb"), rows, files=found)
+    recorded.save("mutate", "make mutate", ("verilator", "cocotb"), {"files": found})
 
 
 def _arguments() -> argparse.Namespace:

@@ -16,7 +16,6 @@ from rich.console import Console
 from rich.progress import track
 
 from phong75.scripts import recorded
-from phong75.scripts.recorded import Row
 from phong75.sim.build import BuildError, runtime
 from phong75.sim.frame.run_frame import SimulationError
 from tests.configuration_tests import SEED, random_configuration_test
@@ -55,12 +54,11 @@ def main(argv: list[str]) -> int:
     for line in wrong:
         print(line, file=sys.stderr)
     pixels, builds = sum(p for _, p, _ in found), len({build for *_, build in found})
-    figure = f"{len(found)} scenes, {builds} builds, {pixels} pixels, {len(wrong)} complaints"
-    print(figure)
+    print(f"{len(found)} scenes, {builds} builds, {pixels} pixels, {len(wrong)} complaints")
     recorded.save(
         "prune-random", "make prune-random", ("verilator", "numpy"),
-        [Row("random scenes, each on the build pruned to it, against the full model", figure,
-             "spans at random, not meshes; `make test` runs three of them")],
+        {"scenes": len(found), "builds": builds, "pixels": pixels, "complaints": len(wrong)},
+        effort={"scenes": len(found)},
     )  # fmt: skip
     return 1 if wrong else 0
 

@@ -17,6 +17,7 @@ from phong75.model.registers import writes
 from phong75.model.spans import illegal_spans, pack, record_bits, span_fields
 from phong75.model.studies.random_frames import random_frame
 from phong75.model.twin import render, zero_normals
+from phong75.scripts.docs import timing
 from phong75.sim.module.stream_tb import REGIMES, PipelineTB, pauses
 
 C = TECHNIQUES.get(os.environ["PHONG_MODULE"], DEFAULT)
@@ -258,3 +259,38 @@ async def longest_spans(dut):
         _queue(tb, frame)
         await tb.drain(after=5)
         assert len(tb.illegal_at) == (not legal), f"{tb.sink.note}: {len(tb.illegal_at)} flags"
+
+
+@cocotb.test(skip=C.technique != "phong")
+async def the_timing_diagram(dut):
+    """docs/images/span_interface.json, cycle by cycle: inputs as drawn, outputs compared."""
+    diagram = timing.load(timing.FOLDER / "span_interface.json")
+    numbers = timing.ticks(diagram)
+    drawn = {s["name"]: timing.values(s) for s in diagram["signal"] if s}
+    tb = PipelineTB(dut)
+    await tb.reset()
+    frame = random_frame(SEED, 2, 1, config=C)
+    frame.spans["length"] = [3, 2]
+    frame.spans["x"] = [10, 20]
+    await tb.write(writes(frame, C))
+    spans = dict(zip("AB", _words(frame.spans), strict=True))
+    pixels = dict(zip(("A0", "A1", "A2", "B0", "B1"), _pixels(frame), strict=True))
+    shown = {int(number): column for column, number in enumerate(numbers) if number != "…"}
+    assert numbers[drawn["m_axis_tvalid"].index("1")] == str(tb.read("pixel_latency") + 3)
+    assert drawn["load (inside)"] == drawn["s_axis_tready"], "there is credit in every cycle"
+    for cycle in range(max(shown) + 1):
+        column = shown.get(cycle, numbers.index("…"))
+        now = {name: value[column] for name, value in drawn.items()}
+        await tb.edge()
+        for name in ("s_axis_tvalid", "m_axis_tready"):
+            tb.drive(**{name: int(now[name])})
+        if now["s_axis_tdata"] != "x":
+            data, last = spans[now["s_axis_tdata"]]
+            assert last == int(now["s_axis_tlast"])
+            tb.drive(s_axis_tdata=data, s_axis_tlast=last)
+        await tb.settle()
+        for name in ("s_axis_tready", "m_axis_tvalid"):
+            assert tb.read(name) == int(now[name]), f"cycle {cycle}: {name}"
+        if now["m_axis_tdata"] != "x":
+            data, last = pixels[now["m_axis_tdata"]]
+            assert tb.read("m_axis_tdata") == data and last == int(now["m_axis_tlast"]), cycle

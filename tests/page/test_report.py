@@ -20,6 +20,7 @@ from phong75.model.config import TECHNIQUES
 from phong75.model.frame import InputError
 from phong75.model.front.scene import bundled_scenes, load_scene
 from phong75.model.scene_to_frame import front_end
+from phong75.scripts import recorded
 from phong75.scripts import run as run_scene
 from phong75.scripts.page import report
 from phong75.sim.design import PACKAGE
@@ -41,7 +42,7 @@ def point(method, label, cycles, rms, **more):
         "clock_mhz": 200, "clock_source": "stated", "frame_us": cycles / 200, "max_lsb": 2 * rms,
         "rms_lsb": rms, "p999_lsb": 1.5 * rms, "mean_lsb": rms / 2,
         "correctly_rounded": 1 - rms / 9, "psnr_db": 50, "simulate_s": 1, "model_s": 0.5,
-        "dsp": "", "lut": "", "ff": "", "ebr": "", "pareto": 1,
+        "dsp": "", "lut_sites": "", "ff": "", "ebr": "", "pareto": 1,
     } | more  # fmt: skip
 
 
@@ -121,19 +122,8 @@ def build(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def records(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("records")
-    row = {"what": "clock", "figure": "201 MHz", "caveat": "an estimate"}
-    (folder / "other.json").write_text(json.dumps(
-        {"name": "other", "command": "make other", "date": "2026-11-22", "commit": "abc",
-         "tools": "tool 1", "rows": [row]}
-    ))  # fmt: skip
-    return folder
-
-
-@pytest.fixture(scope="module")
-def html(build, records):
-    return report.page(build, records)
+def html(build):
+    return report.page(build)
 
 
 # -- without a browser -----------------------------------------------------------------------------
@@ -144,14 +134,15 @@ def test_the_numbers_are_those_of_the_runs(html, build):
         run = json.loads((build / name / "report.json").read_text())
         assert f"{run['error']['max_lsb']:.4f} LSB, bound {run['error']['bound_lsb']:.4f}" in html
         assert f"0 of {run['pixels']:,} pixels".replace(",", " ") in html
-    assert "201 MHz" in html and "make other" in html and "it broke" in html
+    assert "LFE5U-85F" in html and "make formal" in html and "it broke" in html
     assert "0.25, 0" in html and "200 to 236" in html
     assert "1.83, 2.00, 1.99" in html and "the frame is one-sided" in html
     assert "&lt;b&gt;bad&lt;/b&gt;" in html and "<b>bad</b>" not in html
 
 
-def test_what_is_missing_names_its_command(tmp_path):
-    html = report.page(tmp_path, tmp_path)
+def test_what_is_missing_names_its_command(tmp_path, monkeypatch):
+    monkeypatch.setattr(recorded, "FOLDER", tmp_path)
+    html = report.page(tmp_path)
     for target in ("run", "results", "sweep", "tessellation", "stability", "synth"):
         command = f"make {target}"
         assert f"{target}:" in (PACKAGE / "Makefile").read_text()
@@ -553,13 +544,14 @@ def test_nothing_is_without_a_name(visit, html):
 
 
 @browser
-def test_a_page_without_any_result(visit, tmp_path):
-    page = visit(report.page(tmp_path, tmp_path))
+def test_a_page_without_any_result(visit, tmp_path, monkeypatch):
+    monkeypatch.setattr(recorded, "FOLDER", tmp_path)
+    page = visit(report.page(tmp_path))
     assert page.locator(".missing:visible").count() == 9
 
 
 def test_every_bundled_scene_has_a_place(monkeypatch, tmp_path):
     asked = []
     monkeypatch.setattr(report, "scene_result", lambda name, build: asked.append(name))
-    report.page(tmp_path, tmp_path)
+    report.page(tmp_path)
     assert asked == bundled_scenes()
