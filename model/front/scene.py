@@ -50,11 +50,14 @@ import difflib
 import inspect
 import math
 import tomllib
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 
+from phong75.model.arrays import ArrayLike, Reals
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import InputError
 from phong75.model.front import shapes
@@ -76,7 +79,7 @@ DEFAULT_SIZE = (640, 480)
 DEFAULT_BACKGROUND = (0.05, 0.06, 0.08)
 INTERPOLATIONS = ("linear", "normalized_edges")
 
-SHAPES = {
+SHAPES: dict[str, Callable[..., Mesh]] = {
     "sphere": shapes.sphere,
     "torus": shapes.torus,
     "cone": shapes.cone,
@@ -87,6 +90,9 @@ SHAPES = {
 #: Largest tessellation parameters. Finer meshes only take memory: at these values triangles are
 #: far smaller than a pixel.
 MAX_TESSELLATION = {"divisions": 128, "segments": 1024, "sides": 1024, "rings": 1024}
+
+#: What a method of `_Table` returns for a missing key.
+Default = TypeVar("Default")
 
 
 @dataclass(frozen=True)
@@ -106,9 +112,9 @@ class Material:
     weight_zn: tuple[float, ...] = (0.0, 1.0)
     weight_values: tuple[float, ...] = (0.4, 0.4)
 
-    def weight(self, zn) -> np.ndarray:
+    def weight(self, zn: ArrayLike) -> Reals:
         """W at `zn` (any shape), float64."""
-        return np.interp(zn, self.weight_zn, self.weight_values)
+        return np.interp(np.asarray(zn, np.float64), self.weight_zn, self.weight_values)
 
 
 @dataclass
@@ -134,7 +140,7 @@ class Scene:
     height: int
     background: tuple[float, float, float]
     camera: Camera
-    light: np.ndarray
+    light: Reals
     two_sided: bool
     interpolation: str
     objects: list[SceneObject]
@@ -154,7 +160,7 @@ def bundled_scenes() -> list[str]:
 
 
 def load_scene(
-    name_or_path, size: tuple[int, int] | None = None, config: Config = DEFAULT
+    name_or_path: str | Path, size: tuple[int, int] | None = None, config: Config = DEFAULT
 ) -> Scene:
     """Load a bundled scene (by name), a scene file (.toml) or a mesh file.
 
@@ -183,7 +189,7 @@ def load_scene(
     raise InputError(f"{name}: neither a scene (.toml) nor a mesh ({', '.join(MESH_SUFFIXES)})")
 
 
-def _mesh_scene(path: Path, size, config: Config) -> Scene:
+def _mesh_scene(path: Path, size: tuple[int, int] | None, config: Config) -> Scene:
     """A scene that shows one mesh file with the default camera, light and material."""
     mesh = load_mesh(path)
     # In STL files (3D printing) z usually points up; in the other formats, y.
@@ -207,12 +213,13 @@ def _mesh_scene(path: Path, size, config: Config) -> Scene:
     )
 
 
-def _scene(root: _Table, path: Path, size, config: Config) -> Scene:
+def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Config) -> Scene:
     width, height = _size(root, size, config)
-    background = root.reals("background", 3, DEFAULT_BACKGROUND, 0.0, 1.0)
+    background = root.triple("background", DEFAULT_BACKGROUND, 0.0, 1.0)
     two_sided = root.boolean("two_sided", False)
     interpolation = root.choice("interpolation", INTERPOLATIONS, "linear")
-    materials, indices = [], {}
+    materials: list[Material] = []
+    indices: dict[str | None, int] = {}
     for name, table in root.tables_by_name("materials"):
         indices[name] = len(materials)
         materials.append(_material(table))
@@ -243,7 +250,7 @@ def _scene(root: _Table, path: Path, size, config: Config) -> Scene:
     )
 
 
-def _read_toml(path: Path) -> dict:
+def _read_toml(path: Path) -> dict[str, Any]:
     try:
         text = path.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
@@ -259,7 +266,7 @@ def _read_toml(path: Path) -> dict:
         raise InputError(f"{path}: malformed TOML: {message}") from None
 
 
-def _size(root: _Table, size, config: Config) -> tuple[int, int]:
+def _size(root: _Table, size: tuple[int, int] | None, config: Config) -> tuple[int, int]:
     """(width, height) in pixels: `size`, else the scene file's, else the default."""
     in_file = root.value("size", None)
     for where, value in ((root.where("size"), in_file), ("size", size)):
@@ -272,14 +279,15 @@ def _size(root: _Table, size, config: Config) -> tuple[int, int]:
             raise InputError(
                 f"{where} = {value[0]}x{value[1]} is outside 1 to {config.max_size} pixels"
             )
-    return tuple(size or in_file or DEFAULT_SIZE)
+    width, height = size or in_file or DEFAULT_SIZE
+    return width, height
 
 
 def _material(table: _Table) -> Material:
     default = Material()
     zn, values = _weight(table)
     material = Material(
-        table.reals("color", 3, default.color, 0.0, 1.0),
+        table.triple("color", default.color, 0.0, 1.0),
         table.real("d", default.d, 0.0, 1.0),
         table.real("n", default.n, 1.0, 128.0),
         zn or default.weight_zn,
@@ -315,7 +323,13 @@ def _weight(table: _Table) -> tuple[tuple[float, ...], tuple[float, ...]]:
     return (0.0, 1.0), (constant, constant)
 
 
-def _object(table: _Table, number: int, path: Path, materials, indices) -> SceneObject:
+def _object(
+    table: _Table,
+    number: int,
+    path: Path,
+    materials: list[Material],
+    indices: dict[str | None, int],
+) -> SceneObject:
     shape = table.choice("shape", tuple(SHAPES), None)
     file = table.text("mesh", None)
     label = table.text("name", shape or file or f"object {number}")
@@ -327,18 +341,21 @@ def _object(table: _Table, number: int, path: Path, materials, indices) -> Scene
         if crease is not None:
             mesh = mesh.with_crease(crease)
     else:
+        assert file is not None  # checked above
         try:
             mesh = load_mesh(path.parent / file, crease)
         except InputError as error:
             raise InputError(f"{table.where('mesh')}: {error}") from None
-    scale = table.value("scale", 1.0)
-    scale = table.reals("scale", 3) if isinstance(scale, list) else (table.real("scale", 1.0),) * 3
+    if isinstance(table.value("scale", 1.0), list):
+        scale = table.triple("scale", (1.0, 1.0, 1.0))
+    else:
+        scale = (table.real("scale", 1.0),) * 3
     if 0.0 in scale:
         raise table.error("scale", "= 0 would flatten the object")
     mesh = mesh.transformed(
         scale,
-        table.reals("rotate", 3, (0.0, 0.0, 0.0)),
-        table.reals("translate", 3, (0.0, 0.0, 0.0)),
+        table.triple("rotate", (0.0, 0.0, 0.0)),
+        table.triple("translate", (0.0, 0.0, 0.0)),
     )
     reference = table.value("material", None)
     if isinstance(reference, dict):
@@ -360,7 +377,7 @@ def _object(table: _Table, number: int, path: Path, materials, indices) -> Scene
 
 def _shape(table: _Table, shape: str) -> Mesh:
     """The mesh of a shape. The parameters of the shape's function are keys of the table."""
-    arguments = {}
+    arguments: dict[str, float] = {}
     for name, parameter in inspect.signature(SHAPES[shape]).parameters.items():
         if isinstance(parameter.default, int):
             least = 1 if name in ("rings", "divisions") else 3
@@ -374,15 +391,15 @@ def _shape(table: _Table, shape: str) -> Mesh:
     return SHAPES[shape](**arguments)
 
 
-def _camera(table: _Table, points: np.ndarray, aspect: float) -> Camera:
+def _camera(table: _Table, points: Reals, aspect: float) -> Camera:
     """The camera of a [camera] table. Missing keys are chosen so that `points` fill the picture.
 
     points: float64[V, 3], all vertices of the scene. aspect: width / height.
     """
     projection = table.choice("projection", ("orthographic", "perspective"), "orthographic")
     perspective = projection == "perspective"
-    eye, direction = table.reals("eye", 3, None), table.reals("direction", 3, None)
-    target, up = table.reals("target", 3, None), table.reals("up", 3, None)
+    eye, direction = table.triple("eye", None), table.triple("direction", None)
+    target, up = table.triple("target", None), table.triple("up", None)
     height, fov = table.real("height", None), table.real("fov", None)
     near = table.real("near", None)
     if eye is not None and direction is not None:
@@ -401,10 +418,12 @@ def _camera(table: _Table, points: np.ndarray, aspect: float) -> Camera:
         raise table.error("up", "= [0, 0, 0] has no direction")
     table.finish()
 
-    if eye is not None:
-        middle = (points.min(axis=0) + points.max(axis=0)) / 2.0
-        target = middle if target is None else np.asarray(target)
-        back, key = np.asarray(eye) - target, "eye"
+    centre = None if target is None else np.asarray(target)
+    viewpoint = None if eye is None else np.asarray(eye)
+    if viewpoint is not None:
+        if centre is None:
+            centre = (points.min(axis=0) + points.max(axis=0)) / 2.0
+        back, key = viewpoint - centre, "eye"
     else:
         back, key = np.asarray(direction or DEFAULT_DIRECTION), "direction"
     if not np.any(back):
@@ -415,27 +434,27 @@ def _camera(table: _Table, points: np.ndarray, aspect: float) -> Camera:
         if up is not None:
             raise table.error("up", f"= {_show(up)} is parallel to the line of sight")
         axes = view_axes(back, (0.0, 1.0, 0.0))  # the camera looks along the default `up`
+        assert axes is not None
 
     if perspective:
         fov = fov or DEFAULT_FOV
-        if eye is None:
-            target, distance = fit_perspective(points, axes, target, aspect, fov)
-            eye = target + distance * axes[2]
-        eye = np.asarray(eye, float)
-        near = near or NEAR * float(np.linalg.norm(eye - target))
-        return Camera(projection, axes, target, eye, fov=fov, near=near)
-    target, fitting = fit_orthographic(points, axes, target, aspect)
-    return Camera(projection, axes, target, target + axes[2], height=height or fitting)
+        if viewpoint is None or centre is None:
+            centre, distance = fit_perspective(points, axes, centre, aspect, fov)
+            viewpoint = centre + distance * axes[2]
+        near = near or NEAR * float(np.linalg.norm(viewpoint - centre))
+        return Camera(projection, axes, centre, viewpoint, fov=fov, near=near)
+    centre, fitting = fit_orthographic(points, axes, centre, aspect)
+    return Camera(projection, axes, centre, centre + axes[2], height=height or fitting)
 
 
-def _light(table: _Table, camera: Camera) -> np.ndarray:
+def _light(table: _Table, camera: Camera) -> Reals:
     """Unit vector towards the light, float64[3], scene axes."""
-    direction = table.reals("direction", 3, None)
+    components = table.triple("direction", None)
     relative_to = table.choice("relative_to", ("scene", "camera"), "scene")
     table.finish()
-    if direction is None:
-        direction, relative_to = DEFAULT_LIGHT, "camera"
-    direction = np.asarray(direction)
+    if components is None:
+        components, relative_to = DEFAULT_LIGHT, "camera"
+    direction = np.asarray(components)
     if not np.any(direction):
         raise table.error("direction", "= [0, 0, 0] has no direction")
     direction = direction / np.max(np.abs(direction))
@@ -444,7 +463,7 @@ def _light(table: _Table, camera: Camera) -> np.ndarray:
     return direction / np.linalg.norm(direction)
 
 
-def _show(value) -> str:
+def _show(value: object) -> str:
     """`value` on one line of at most 60 characters."""
     text = " ".join(repr(list(value) if isinstance(value, tuple) else value).split())
     return text if len(text) <= 60 else text[:57] + "..."
@@ -457,7 +476,7 @@ class _Table:
     with a `default` return it if the key is missing.
     """
 
-    def __init__(self, values: dict, file: str, prefix: str = ""):
+    def __init__(self, values: dict[str, Any], file: str, prefix: str = "") -> None:
         self.values, self.file, self.prefix = values, file, prefix
         self.known: set[str] = set()
 
@@ -469,12 +488,12 @@ class _Table:
         """An InputError about `key`."""
         return InputError(f"{self.where(key)} {message}".replace(" : ", ": "))
 
-    def value(self, key: str, default):
+    def value(self, key: str, default: object) -> Any:
         """The unchecked value of `key`."""
         self.known.add(key)
         return self.values.get(key, default)
 
-    def child(self, key: str, values) -> _Table:
+    def child(self, key: str, values: object) -> _Table:
         """`values` of `key` as a table."""
         if not isinstance(values, dict):
             raise self.error(key, f"= {_show(values)} is not a table")
@@ -496,7 +515,7 @@ class _Table:
             raise self.error(key, "is not a list of tables: write [[objects]]")
         return [self.child(f"{key}[{i}]", v) for i, v in enumerate(value)]
 
-    def _number(self, key: str, value, low: float, high: float) -> float:
+    def _number(self, key: str, value: object, low: float, high: float) -> float:
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise self.error(key, f"= {_show(value)} is not a number")
         if not math.isfinite(value):
@@ -505,7 +524,9 @@ class _Table:
             raise self.error(key, f"= {value:g} is outside [{low:g}, {high:g}]")
         return float(value)
 
-    def real(self, key: str, default, low: float = -1e30, high: float = 1e30):
+    def real(
+        self, key: str, default: Default, low: float = -1e30, high: float = 1e30
+    ) -> float | Default:
         """A real number from `low` to `high`."""
         value = self.value(key, None)
         return default if value is None else self._number(key, value, low, high)
@@ -524,14 +545,16 @@ class _Table:
             raise self.error(key, f"= {_show(value)} is not a list of numbers")
         return [self._number(f"{key}[{i}]", v, low, high) for i, v in enumerate(value)]
 
-    def reals(self, key: str, count: int, default=None, low: float = -1e30, high: float = 1e30):
-        """A tuple of `count` real numbers from `low` to `high`."""
+    def triple(
+        self, key: str, default: Default, low: float = -1e30, high: float = 1e30
+    ) -> tuple[float, float, float] | Default:
+        """Three real numbers from `low` to `high`."""
         if self.value(key, None) is None:
             return default
         values = self.list_of_reals(key, low, high)
-        if len(values) != count:
-            raise self.error(key, f"= {_show(values)} does not have {count} numbers")
-        return tuple(values)
+        if len(values) != 3:
+            raise self.error(key, f"= {_show(values)} does not have 3 numbers")
+        return values[0], values[1], values[2]
 
     def boolean(self, key: str, default: bool) -> bool:
         """True or False."""
@@ -540,14 +563,16 @@ class _Table:
             raise self.error(key, f"= {_show(value)} is not true or false")
         return value
 
-    def text(self, key: str, default):
+    def text(self, key: str, default: Default) -> str | Default:
         """A string."""
-        value = self.value(key, default)
-        if value is not None and not isinstance(value, str):
+        value = self.value(key, None)
+        if value is None:
+            return default
+        if not isinstance(value, str):
             raise self.error(key, f"= {_show(value)} is not a string")
         return value
 
-    def choice(self, key: str, choices: tuple[str, ...], default):
+    def choice(self, key: str, choices: tuple[str, ...], default: Default) -> str | Default:
         """One of the strings `choices`."""
         value = self.text(key, default)
         if value is not None and value != default and value not in choices:

@@ -24,6 +24,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from phong75.model.arrays import Flags, Ints, Reals
+
 #: Vertices are snapped to multiples of 2**-12 pixel. The shift is invisible, and all products of
 #: coordinates within the guard band stay below 2**63.
 SUBPIXEL_BITS = 12
@@ -48,16 +50,16 @@ class Triangles:
     material: int64[T], index of the material.
     """
 
-    x: np.ndarray
-    y: np.ndarray
-    depth: np.ndarray
-    value: np.ndarray
-    material: np.ndarray
+    x: Ints
+    y: Ints
+    depth: Reals
+    value: Reals
+    material: Ints
 
     def __len__(self) -> int:
         return len(self.x)
 
-    def take(self, which) -> Triangles:
+    def take(self, which: Ints | Flags) -> Triangles:
         """The triangles selected by `which` (a mask or indices)."""
         return Triangles(
             self.x[which],
@@ -75,20 +77,20 @@ class Segments:
     triangle: index of the triangle. All arrays are int64[n].
     """
 
-    triangle: np.ndarray
-    y: np.ndarray
-    left: np.ndarray
-    right: np.ndarray
+    triangle: Ints
+    y: Ints
+    left: Ints
+    right: Ints
 
     def __len__(self) -> int:
         return len(self.y)
 
-    def take(self, which) -> Segments:
+    def take(self, which: Ints | Flags) -> Segments:
         """The segments selected by `which` (a mask or indices)."""
         return Segments(self.triangle[which], self.y[which], self.left[which], self.right[which])
 
 
-def clip(corners: np.ndarray, value: np.ndarray, material: np.ndarray, near: float):
+def clip(corners: Reals, value: Reals, material: Ints, near: float) -> tuple[Reals, Reals, Ints]:
     """Clip triangles at the near plane w = `near` and at the guard band around the screen.
 
     corners: float64[T, 3, 4], homogeneous screen points (X, Y, w, z) of `Camera.project`. value:
@@ -128,7 +130,7 @@ def clip(corners: np.ndarray, value: np.ndarray, material: np.ndarray, near: flo
     return values[..., :4], values[..., 4:], material
 
 
-def _cut(values: np.ndarray, distance: np.ndarray, inner: int, outer: int) -> np.ndarray:
+def _cut(values: Reals, distance: Reals, inner: int, outer: int) -> Reals:
     """The point where the edge from corner `inner` to corner `outer` meets the plane.
 
     values: float64[n, 3, C]. distance: float64[n, 3], signed distances from the plane, >= 0 inside.
@@ -138,24 +140,28 @@ def _cut(values: np.ndarray, distance: np.ndarray, inner: int, outer: int) -> np
     return values[:, inner] + t[:, None] * (values[:, outer] - values[:, inner])
 
 
-def set_up(x, y, depth, value, material, two_sided: bool) -> Triangles:
+def set_up(
+    x: Reals, y: Reals, depth: Reals, value: Reals, material: Ints, two_sided: bool
+) -> Triangles:
     """Snap vertices to the grid; drop back faces (unless `two_sided`) and faces without area.
 
     x, y: float64[T, 3], pixels, magnitudes up to about GUARD. Front faces are counter-clockwise,
     which is a negative area with y downward. depth, value, material: see `Triangles`, vertices in
     the order of x and y.
     """
-    x, y = (np.floor(c * GRID + 0.5).astype(np.int64) for c in (x, y))
-    area = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0])
+    column, line = (np.floor(c * GRID + 0.5).astype(np.int64) for c in (x, y))
+    x0, x1, x2 = column.T
+    y0, y1, y2 = line.T
+    area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
     keep = np.flatnonzero(area != 0 if two_sided else area < 0)
-    order = np.argsort(y[keep], axis=1, kind="stable")
+    order = np.argsort(line[keep], axis=1, kind="stable")
     row = keep[:, None]
     return Triangles(
-        x[row, order], y[row, order], depth[row, order], value[row, order], material[keep]
+        column[row, order], line[row, order], depth[row, order], value[row, order], material[keep]
     )
 
 
-def line_range(triangles: Triangles, width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
+def line_range(triangles: Triangles, width: int, height: int) -> tuple[Ints, Ints]:
     """First scan line of each triangle and the line after its last, int64[T] each, 0 to height.
 
     A triangle covers the lines whose centre is at or below its top vertex and above its bottom
@@ -167,12 +173,12 @@ def line_range(triangles: Triangles, width: int, height: int) -> tuple[np.ndarra
     return first, np.where(off_screen, first, np.maximum(end, first))
 
 
-def _first_centre(coordinate: np.ndarray) -> np.ndarray:
+def _first_centre(coordinate: Ints) -> Ints:
     """The first pixel whose centre is at or after `coordinate` (1/GRID pixel)."""
     return -((GRID // 2 - coordinate) // GRID)
 
 
-def cover(triangles: Triangles, first, end, width: int) -> Segments:
+def cover(triangles: Triangles, first: Ints, end: Ints, width: int) -> Segments:
     """The strips of triangles on the scan lines first <= y < end, within 0 <= x < width.
 
     first, end: int64[T], within the lines of `line_range`. Strips without a pixel are left out.
@@ -201,7 +207,7 @@ def cover(triangles: Triangles, first, end, width: int) -> Segments:
     return Segments(t, line, left, right).take(left < right)
 
 
-def _crossing(xa, ya, xb, yb, y) -> np.ndarray:
+def _crossing(xa: Ints, ya: Ints, xb: Ints, yb: Ints, y: Ints) -> Ints:
     """The first pixel whose centre is on or to the right of the edge a-b (ya < yb) at height `y`.
 
     All coordinates are int64[n] in 1/GRID pixel; the result is in pixels.
@@ -211,7 +217,7 @@ def _crossing(xa, ya, xb, yb, y) -> np.ndarray:
     return -((-reach) // (GRID * rise))
 
 
-def resolve(segments: Segments, depth: np.ndarray, width: int) -> Segments:
+def resolve(segments: Segments, depth: Reals, width: int) -> Segments:
     """The visible parts of `segments`, sorted by y, then x.
 
     depth: float64[n, 2], depth at the first and at the last pixel of each segment. At equal depth
@@ -242,7 +248,7 @@ def resolve(segments: Segments, depth: np.ndarray, width: int) -> Segments:
     return visible.take(np.argsort(visible.y * width + visible.left, kind="stable"))
 
 
-def _nearest_runs(segments: Segments, depth: np.ndarray, width: int) -> Segments:
+def _nearest_runs(segments: Segments, depth: Reals, width: int) -> Segments:
     """Visible runs of overlapping `segments`: the nearest segment owns a pixel.
 
     A run is the longest sequence of pixels on a line with one owner. Arguments as for `resolve`.

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from phong75.model.config import DEFAULT as C
@@ -11,7 +13,11 @@ from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable
 
 
 def random_frame(
-    seed, spans: int, longest: int, two_sided: bool = False, config: Config = C
+    seed: int | Sequence[int],
+    spans: int,
+    longest: int,
+    two_sided: bool = False,
+    config: Config = C,
 ) -> Frame:
     """A frame of `spans` legal spans of 1 to `longest` pixels each, of random materials.
 
