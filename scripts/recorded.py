@@ -1,8 +1,10 @@
-"""The last results of the long runs, and the README's table of them: `make hardware`.
+# SPDX-License-Identifier: MIT
+"""The results of the long runs, results/<name>.json, and the README's table of them.
 
-Every long target leaves its figures in results/<name>.json, with the date, the commit and
-the versions of its tools. The files are kept in git, so that the table and the report page show
-what was found without hours of computing; `make test` fails if the README shows anything else.
+A long run writes its record only where it is asked to (`--record`, `RECORD=1`), with the date, the
+commit and the versions of its tools. A lesser run never replaces a better record: not one that
+failed, nor a part of the whole, nor one with less effort (fewer seeds, say). The files are kept in
+git, so that the table and the report page show what was found without hours of computing.
 """
 
 from __future__ import annotations
@@ -15,7 +17,9 @@ import sys
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from phong75.sim.design import PACKAGE
+from phong75.model.frame import InputError
+from phong75.scripts import console
+from phong75.sim.design import IN_CHECKOUT, PACKAGE
 
 FOLDER = PACKAGE / "results"
 #: The records of the table, in its order.
@@ -67,6 +71,46 @@ def save(name: str, command: str, packages: tuple[str, ...], rows: list[Row], **
     return path
 
 
+def check(wanted: bool) -> None:
+    """Raise InputError, before the work, if a record is `wanted` and there is no folder for it."""
+    if wanted and not IN_CHECKOUT:
+        raise InputError("--record writes into results/ of a checkout, and this is none")
+
+
+def refusal(name: str, effort: dict[str, int], failed: bool = False, part: str = "") -> str:
+    """Why a run must not become record `name`; "" if it may. Arguments as for `record`."""
+    if failed:
+        return "the run failed"
+    if part:
+        return part
+    before = (load(name) or {}).get("effort", {})
+    lesser = [
+        f"{effort.get(what, 0)} {what}, and the record has {count}"
+        for what, count in before.items()
+        if effort.get(what, 0) < count
+    ]
+    return ", ".join(lesser)
+
+
+def record(
+    name: str, command: str, packages: tuple[str, ...], rows: list[Row],
+    effort: dict[str, int] | None = None, failed: bool = False, part: str = "", **more,
+) -> bool:  # fmt: skip
+    """Write record `name` unless the run is a lesser one; says on stderr which. Returns whether.
+
+    effort: how much was tried ({"seeds": 5}, say), kept in the record for later runs. failed: a
+    pixel differed, a bound was missed. part: what makes the run a part of the whole, or "". The
+    rest as for `save`.
+    """
+    effort = effort or {}
+    if reason := refusal(name, effort, failed, part):
+        console.note(f"not recorded in results/{name}.json: {reason}")
+        return False
+    save(name, command, packages, rows, **({"effort": effort} if effort else {}), **more)
+    console.note(f"recorded in results/{name}.json")
+    return True
+
+
 def load(name: str) -> dict | None:
     """Record `name`; None if it was never made."""
     path = FOLDER / f"{name}.json"
@@ -88,12 +132,12 @@ def table() -> str:
 
 def main() -> int:
     """Print the table; returns the exit code."""
-    print(table())
+    console.say(table())
     missing = [name for name in NAMES if load(name) is None]
     if missing:
-        print(f"not run yet: {' '.join(missing)}", file=sys.stderr)
-    return 0
+        console.note(f"not run yet: {' '.join(missing)}")
+    return console.GOOD
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(console.exit_code(main))

@@ -1,4 +1,5 @@
-"""The table of results in the README, measured anew: `make results`.
+# SPDX-License-Identifier: MIT
+"""The README's table of scenes, measured anew: `phong75 scenes`.
 
 Every bundled scene at every promised size through RTL, twin and reference; one row a scene. All
 numbers also go to build/results.json.
@@ -7,16 +8,14 @@ numbers also go to build/results.json.
 from __future__ import annotations
 
 import json
-import sys
 from dataclasses import dataclass
-
-from rich.console import Console
 
 from phong75.model import twin
 from phong75.model.analysis import error_budget, metrics, reference
 from phong75.model.config import DEFAULT as CONFIG
 from phong75.model.front.scene import bundled_scenes, load_scene
 from phong75.model.front.scene_to_spans import front_end
+from phong75.scripts import console, recorded
 from phong75.sim.design import BUILD
 from phong75.sim.frame.run_frame import Job, SimResult, simulate_jobs
 
@@ -86,29 +85,44 @@ def as_dict(scene: str, size: tuple[int, int], result: Result) -> dict:
         "spans": result.spans, "cycles": cycles, "fps": result.max_fps,
         "mismatches": result.mismatches, "max_lsb": result.error["max_lsb"],
         "bound_lsb": float(result.bound_lsb),
+        "correctly_rounded": result.error["correctly_rounded"],
     }  # fmt: skip
 
 
-def main() -> int:
-    """Print the table; returns the exit code."""
-    console = Console(stderr=True)
+def failures(found: list[dict]) -> list[str]:
+    """What is wrong with the rows of `as_dict`, a line each."""
+    return [
+        f"{row['scene']}, {row['size']}: {row['mismatches']} pixels differ, largest error "
+        f"{row['max_lsb']:.4f} LSB, bound {row['bound_lsb']:.4f}"
+        for row in found
+        if row["mismatches"] or row["max_lsb"] > row["bound_lsb"]
+    ]
+
+
+def main(record: bool) -> int:
+    """Print the table; returns the exit code. Raises BuildError, SimulationError."""
+    recorded.check(record)
     rows, found = [], []
     for scene in bundled_scenes():
-        console.print(f"{scene} ...")
+        console.phase(scene)
         measured = measure(scene)
         rows.append(row(scene, measured))
         found += [as_dict(scene, *pair) for pair in zip(SIZES, measured, strict=True)]
-    said = {
+    about = {
         "schema": SCHEMA,
         "fps": FPS,
         "clock_hz": CLOCK_HZ,
         "cycles_available": int(CLOCK_HZ // FPS),
     }
-    BUILD.mkdir(exist_ok=True)
-    (BUILD / "results.json").write_text(json.dumps(said | {"rows": found}, indent=1) + "\n")
-    print("\n".join([HEADER, *rows]))
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    BUILD.mkdir(parents=True, exist_ok=True)
+    (BUILD / "results.json").write_text(json.dumps(about | {"rows": found}, indent=1) + "\n")
+    console.say("\n".join([HEADER, *rows]))
+    wrong = failures(found)
+    if record:
+        recorded.record(
+            "scenes", "make scenes", ("verilator", "numpy"), [], {"frames": len(found)},
+            failed=bool(wrong), readme="\n".join([HEADER, *rows]), frames=found, **about,
+        )  # fmt: skip
+    for line in wrong:
+        console.failure(line)
+    return console.FAILED if wrong else console.GOOD

@@ -1,4 +1,5 @@
-"""A waveform of a short run with one module's signals grouped for GTKWave: `make waves MODULE=`.
+# SPDX-License-Identifier: MIT
+"""A waveform of a short run with one module's signals grouped for GTKWave: `phong75 waves MODULE`.
 
 Writes build/waves/<module>.vcd and .gtkw. The whole pipeline runs a sphere of a few dots; the
 save file shows clock and flow control, then the ports of each instance of the module, then the
@@ -9,18 +10,19 @@ from __future__ import annotations
 
 import re
 import shutil
-import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from phong75.model.config import DEFAULT as CONFIG
+from phong75.model.config import Config
 from phong75.model.frame import InputError
 from phong75.model.front.scene import load_scene
 from phong75.model.front.scene_to_spans import front_end
+from phong75.scripts import console
+from phong75.scripts.configurations import unknown
 from phong75.sim import design
-from phong75.sim.build import Bench, BuildError
+from phong75.sim.build import Bench
 from phong75.sim.design import BUILD
-from phong75.sim.frame.run_frame import Job, SimulationError, simulate_jobs
+from phong75.sim.frame.run_frame import Job, simulate_jobs
 
 TOP = "phong_pipeline"
 SIZE = (24, 16)
@@ -90,8 +92,7 @@ def save_file(vcd: Path, module: str) -> str:
             chosen.sort(key=_stage)
             groups.append((f"{leaf} {title}", [f"{scope.path}.{s}" for s in chosen]))
     if len(groups) < 2:
-        known = sorted(file.stem for file in design.sources() if instances(file.stem))
-        raise InputError(f"MODULE is `{module}`, not one of {', '.join(known)}")
+        raise _unknown(module)
     lines = [f'[dumpfile] "{vcd.name}"']
     for title, signals in groups:
         if not signals:
@@ -103,35 +104,35 @@ def save_file(vcd: Path, module: str) -> str:
     return "\n".join(lines) + "\n"
 
 
+def _unknown(module: str) -> InputError:
+    """The error for a `module` that is not part of what runs."""
+    known = sorted(file.stem for file in design.sources() if instances(file.stem))
+    return unknown("MODULE", module, known)
+
+
 def _stage(signal: str) -> tuple[int, str]:
     """Sorts signals by the stage in their name (_p7), as the data flow; others first."""
     stage = re.search(r"_p(\d+)\b", signal)
     return int(stage[1]) if stage else -1, signal
 
 
-def main(argv: list[str]) -> int:
-    """Write the two files; returns the exit code."""
-    module = argv[0] if argv else TOP
+def main(module: str, config: Config) -> int:
+    """Write the two files; returns the exit code.
+
+    Raises InputError if `module` is no part of `config`; BuildError, SimulationError.
+    """
     if design.module_file(module) is None or not instances(module):
-        known = sorted(file.stem for file in design.sources() if instances(file.stem))
-        print(f"MODULE is `{module}`, not one of {', '.join(known)}", file=sys.stderr)
-        return 2
+        raise _unknown(module)
     folder = BUILD / "waves"
     folder.mkdir(parents=True, exist_ok=True)
     vcd = folder / f"{module}.vcd"
-    try:
-        frame = front_end(load_scene("sphere", SIZE)).frame
-        simulate_jobs([Job(frame)], CONFIG, Bench("frame_bench", CONFIG, trace=True), waves=vcd)
-        vcd.with_suffix(".gtkw").write_text(save_file(vcd, module))
-    except (InputError, BuildError, SimulationError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    frame = front_end(load_scene("sphere", SIZE), config).frame
+    bench = Bench("frame_bench", config, trace=True)
+    simulate_jobs([Job(frame)], config, bench, waves=vcd, progress=console.phase)
+    save = vcd.with_suffix(".gtkw")
+    save.write_text(save_file(vcd, module))
     viewer = (
         "" if shutil.which("gtkwave") else "; GTKWave is not installed (apt-get install gtkwave)"
     )
-    print(f"gtkwave {vcd.with_suffix('.gtkw')}{viewer}")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    console.say(f"gtkwave {console.shown(save)}{viewer}")
+    return console.GOOD

@@ -13,7 +13,7 @@ import hashlib
 import os
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -23,7 +23,7 @@ from cocotb_tools.runner import Verilator
 
 from phong75.model.config import DEFAULT, Config
 from phong75.model.verilog import header
-from phong75.sim import design
+from phong75.sim import design, environment
 from phong75.sim.design import BUILD, SIM
 
 #: What benches have in common.
@@ -40,9 +40,6 @@ _RUNTIME = (
     "verilated_cov",
 )  # fmt: skip
 
-#: Variable that names a folder for coverage counts; where it is set, all benches count.
-COVERAGE = "PHONG_COVERAGE"
-
 
 #: Folders of the top levels that benches are built around.
 _BENCHES = (SIM / "frame", SIM / "module")
@@ -50,6 +47,10 @@ _BENCHES = (SIM / "frame", SIM / "module")
 
 def _benches() -> list[Path]:
     return [file for folder in _BENCHES for file in sorted(folder.glob("*.v"))]
+
+
+def silent(text: str) -> None:
+    """Show nothing: what a function calls with the name of its phase where nobody looks."""
 
 
 class BuildError(Exception):
@@ -103,13 +104,25 @@ def generate_header(config: Config = DEFAULT) -> Path:
     return folder
 
 
+def _runtime_sources() -> list[Path]:
+    return [_INCLUDE / f"{name}.cpp" for name in _RUNTIME]
+
+
+def _runtime_library() -> Path:
+    return SHARED / digest(CXX_FLAGS, *_runtime_sources()) / "libverilated.a"
+
+
+def runtime_built() -> bool:
+    """Whether the library of Verilator's runtime is there already."""
+    return _runtime_library().is_file()
+
+
 def runtime() -> Path:
-    """The library of Verilator's runtime, compiled if need be."""
-    sources = [_INCLUDE / f"{name}.cpp" for name in _RUNTIME]
-    folder = SHARED / digest(CXX_FLAGS, *sources)
-    library = folder / "libverilated.a"
+    """The library of Verilator's runtime, compiled if need be. Raises BuildError."""
+    sources, library = _runtime_sources(), _runtime_library()
     if library.is_file():
         return library
+    folder = library.parent
     folder.mkdir(parents=True, exist_ok=True)
     jobs = [
         subprocess.Popen(
@@ -179,7 +192,7 @@ class Bench(Verilator):
         self._rtl = rtl or design.RTL
         self._texts = dict(sources or {})
         self._written: list[Path] = []
-        wanted = coverage or os.environ.get(COVERAGE)
+        wanted = coverage or os.environ.get(environment.COVERAGE)
         self._coverage = Path(wanted).resolve() if wanted else None
         include = generate_header(config)
         files = [
@@ -234,11 +247,17 @@ class Bench(Verilator):
         self._written = sorted([*self.folder.glob("Vtop*.cpp"), *self.folder.glob("Vtop*.h")])
         return self._written
 
-    def make(self) -> Path:
-        """Build if need be. Returns the folder. Raises BuildError."""
+    def make(self, progress: Callable[[str], None] = silent) -> Path:
+        """Build if need be. Returns the folder. Raises BuildError.
+
+        progress: called with what a phase does before each that takes seconds.
+        """
         if self.built:
             return self.folder
+        if not runtime_built():
+            progress("compiling Verilator's runtime (once)")
         library = runtime()
+        progress("compiling the testbench (once)")
         units = [file for file in self.verilate() if file.suffix == ".cpp"]
         whole = self.folder / "whole.cpp"
         whole.write_text("".join(f'#include "{unit.name}"\n' for unit in units))

@@ -11,6 +11,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from phong75.sim import environment
+
 #: The package: the checkout, or where a wheel was installed.
 PACKAGE = Path(__file__).resolve().parent.parent
 RTL = PACKAGE / "rtl"
@@ -24,7 +26,7 @@ IN_CHECKOUT = (PACKAGE / "pyproject.toml").is_file()
 
 def _build_folder() -> Path:
     """$PHONG75_BUILD; else build/ of a checkout; else phong75/ in the user's cache folder."""
-    if named := os.environ.get("PHONG75_BUILD"):
+    if named := os.environ.get(environment.BUILD):
         return Path(named).resolve()
     if IN_CHECKOUT:
         return PACKAGE / "build"

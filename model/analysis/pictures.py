@@ -32,12 +32,12 @@ def write_picture(path, picture) -> None:
     Image.fromarray(picture).save(path, format="PNG")
 
 
-def write_error_map(path, frame: Frame, x, y, error, bound: float) -> None:
+def write_error_map(path, frame: Frame, x, y, error, bound: float | None) -> None:
     """Write a heat map (PNG) of `error` (float64[n, 3], in LSB) at `x`, `y` (int[n]).
 
     A dot shows the largest error of its three channels; dots without a span are grey. The scale
     starts at 0 and ends at 1 LSB, or at the largest error if that is more, so that the maps of
-    good runs can be laid side by side; a mark on it shows `bound`. Raises OSError.
+    good runs can be laid side by side; a mark on it shows `bound`, if there is one. Raises OSError.
     """
     # Slow to import, and only this picture needs it. The Figure is made without pyplot, so that
     # no window system and no global state are involved.
@@ -66,7 +66,7 @@ def write_error_map(path, frame: Frame, x, y, error, bound: float) -> None:
     axes.set_xlabel("x")
     axes.set_ylabel("y")
     bar = figure.colorbar(image, cax=box(left + wide + 15, 18, max(high, _ROOM)), label="LSB")
-    if bound <= top:
+    if bound is not None and bound <= top:
         bar.ax.axhline(bound, color="cyan", linewidth=2)
         bar.ax.set_title("line:\nbound", fontsize=7, color="teal")
     figure.savefig(path, format="png", metadata={"Software": None})

@@ -9,13 +9,14 @@ from pathlib import Path
 
 import cocotb
 
+from phong75.sim import environment
 from phong75.sim.frame.frame_tb import FrameTB
 
 
 @cocotb.test()
 async def frame_jobs(dut):
     """Every job of jobs.json in turn; what the counters said goes to counters.json."""
-    folder = Path(os.environ["PHONG_JOBS"])
+    folder = Path(os.environ[environment.JOBS])
     tb = FrameTB(dut)
     await tb.reset()
     said = []

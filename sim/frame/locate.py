@@ -19,6 +19,7 @@ from phong75.model.twin.core.shading_unit import shading_unit
 from phong75.model.twin.core.span_walker import span_walker
 from phong75.model.twin.phong_pipeline import interpolate
 from phong75.model.twin.techniques.intensity_code import intensity_code
+from phong75.sim import environment
 from phong75.sim.build import Bench
 from phong75.sim.design import BUILD
 from phong75.sim.module.unit_tb import UnitTB, first_difference
@@ -46,7 +47,7 @@ def _vectors(frame: Frame, pixel: int, config: Config):
 @cocotb.test()
 async def locate_stage(dut):
     """Run the pixel of where.json through one module; the first stage that differs is written."""
-    folder = Path(os.environ["PHONG_VECTORS"])
+    folder = Path(os.environ[environment.VECTORS])
     where = json.loads((folder / "where.json").read_text())
     config = TECHNIQUES[where["technique"]]
     frame = read_spans(folder / "spans", config)
@@ -81,7 +82,8 @@ def locate(frame: Frame, pixel: int, config: Config = DEFAULT, rtl: Path | None 
             (folder / "where.json").write_text(json.dumps(where | {"module": module}))
             top, text = bench_source(module)
             bench = Bench(top, sources={f"{top}.v": text}, **({"rtl": rtl} if rtl else {}))
-            bench.run("phong75.sim.frame.locate", folder, extra_env={"PHONG_VECTORS": str(folder)})
+            handed = {environment.VECTORS: str(folder)}
+            bench.run("phong75.sim.frame.locate", folder, extra_env=handed)
             said = json.loads((folder / "said.json").read_text())
             if said:
                 return said

@@ -18,7 +18,8 @@ from phong75.model.frame import Frame
 from phong75.model.registers import writes
 from phong75.model.spans import write_spans
 from phong75.model.twin import Pixels
-from phong75.sim.build import Bench
+from phong75.sim import environment
+from phong75.sim.build import Bench, silent
 from phong75.sim.design import BUILD
 
 
@@ -93,16 +94,19 @@ def body_offset(path: Path) -> int:
 def simulate_jobs(
     jobs: list[Job], config: Config = DEFAULT, bench: Bench | None = None,
     waves: Path | None = None, power_up: int | None = None,
+    progress: Callable[[str], None] = silent,
 ):  # fmt: skip
     """Run `jobs` one after the other in one simulation. Returns a list of SimResult.
 
     waves: file for a VCD, if `bench` was built with a trace. power_up: seed of random contents of
-    all registers at power-up, in place of zeros. Raises BuildError, SimulationError.
+    all registers at power-up, in place of zeros. progress: called with what a phase does, before
+    it. Raises BuildError, SimulationError.
     """
     bench = bench or Bench("frame_bench", config)
     begin = time.perf_counter()
-    bench.make()
+    bench.make(progress)
     build_s = time.perf_counter() - begin
+    progress("simulating")
     (BUILD / "run").mkdir(parents=True, exist_ok=True)
     folder = Path(tempfile.mkdtemp(dir=BUILD / "run"))
     try:
@@ -127,7 +131,7 @@ def simulate_jobs(
                 arguments += ["+verilator+rand+reset+2", f"+verilator+seed+{power_up}"]
             bench.run(
                 "phong75.sim.frame.frame_jobs", folder, test_args=arguments,
-                extra_env={"PHONG_JOBS": str(folder)},
+                extra_env={environment.JOBS: str(folder)},
             )  # fmt: skip
             said = json.loads((folder / "counters.json").read_text())
         except (OSError, RuntimeError, SystemExit) as error:
@@ -146,16 +150,13 @@ def simulate_jobs(
             )  # fmt: skip
         return results
     finally:
-        if "PHONG_KEEP" not in os.environ:
+        if environment.KEEP not in os.environ:
             shutil.rmtree(folder, ignore_errors=True)
 
 
 def simulate(
     spans_path, frame: Frame, config: Config = DEFAULT,
-    progress: Callable[[float], None] | None = None,
+    progress: Callable[[str], None] = silent,
 ) -> SimResult:  # fmt: skip
-    """Run one frame whose span file is `spans_path`."""
-    result = simulate_jobs([Job(frame, Path(spans_path))], config)[0]
-    if progress:
-        progress(1.0)
-    return result
+    """Run one frame whose span file is `spans_path`; the rest as for `simulate_jobs`."""
+    return simulate_jobs([Job(frame, Path(spans_path))], config, progress=progress)[0]

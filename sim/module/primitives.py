@@ -18,6 +18,7 @@ from cocotb.triggers import ClockCycles, FallingEdge
 from phong75.model.config import DEFAULT as C
 from phong75.model.config import levels
 from phong75.model.registers import address_bits, word_bits
+from phong75.sim import environment
 from phong75.sim.module.unit_tb import THIN
 
 TOP = "primitives_bench"
@@ -328,7 +329,7 @@ class PrimitivesTB:
 
     def __init__(self, dut):
         self.dut = dut
-        self.folder = Path(os.environ["PHONG_VECTORS"])
+        self.folder = Path(os.environ[environment.VECTORS])
         self.job = 0
         dut.start.value = 0
         Clock(dut.clk, 10, unit="ns", impl="gpi").start()

@@ -12,10 +12,11 @@ from cocotb.triggers import ClockCycles, FallingEdge
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import Frame
 from phong75.model.registers import FIELDS, writes
+from phong75.sim import environment
 from phong75.sim.module.units import MODULES, lanes
 
 #: Only every so many vectors of `check` are sent: a slow simulator asks for it.
-THIN = int(os.environ.get("PHONG_THIN", "1"))
+THIN = int(os.environ.get(environment.THIN, "1"))
 
 
 def first_difference(module: str, inputs, expected: dict, got: dict) -> str | None:
@@ -43,7 +44,7 @@ class UnitTB:
 
     def __init__(self, dut, module: str):
         self.dut, self.module = dut, module
-        self.folder = Path(os.environ["PHONG_VECTORS"])
+        self.folder = Path(os.environ[environment.VECTORS])
         self.job = 0
         self.latency: dict[str, int] = {}
         dut.start.value = 0

@@ -20,7 +20,7 @@ from rich.table import Table
 
 from phong75.scripts import recorded
 from phong75.scripts.recorded import Row
-from phong75.sim import design
+from phong75.sim import design, environment
 from phong75.sim.design import BUILD
 
 TESTS = ("tests/test_modules.py", "tests/test_frames.py", "tests/test_trials.py")
@@ -66,7 +66,7 @@ def main() -> int:
     shutil.rmtree(folder, ignore_errors=True)
     command = [sys.executable, "-m", "pytest", *TESTS, *sys.argv[1:]]
     done = subprocess.run(
-        command, cwd=design.PACKAGE, env=os.environ | {"PHONG_COVERAGE": str(folder)}
+        command, cwd=design.PACKAGE, env=os.environ | {environment.COVERAGE: str(folder)}
     )
     found = points(folder)
     if not found:

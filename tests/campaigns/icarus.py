@@ -18,6 +18,7 @@ from rich.console import Console
 
 from phong75.scripts import recorded
 from phong75.scripts.recorded import Row
+from phong75.sim import environment
 from phong75.sim.build import BuildError
 from phong75.sim.design import BUILD
 from phong75.sim.icarus import THIN, IcarusBench
@@ -33,7 +34,7 @@ def main(argv: list[str]) -> int:
         print(f"no such bench: {' '.join(wrong)}; there are {' '.join(NAMES)}", file=sys.stderr)
         return 2
     logging.disable(logging.CRITICAL)
-    os.environ["PHONG_THIN"] = str(THIN)
+    os.environ[environment.THIN] = str(THIN)
     console = Console(stderr=True)
     total, failures = 0, []
     for name in argv or NAMES:
