@@ -7,7 +7,7 @@ A command imports what it needs when it is called, so that help and completion a
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Annotated, Any
 
 import typer
@@ -28,20 +28,35 @@ class OneLineErrors(typer.core.TyperGroup):
         return code
 
 
+#: How every command line of the project looks: plain help, no boxes, no tracebacks in colour.
+STYLE: dict[str, Any] = {
+    "context_settings": {"help_option_names": ["-h", "--help"]},
+    "rich_markup_mode": None,
+    "pretty_exceptions_enable": False,
+}
+
 app = typer.Typer(
     name="phong75",
     cls=OneLineErrors,
     help="Phong's 1975 shading hardware: render, compare, measure, synthesize, prove.",
     epilog="Exit codes: 0; 1 a pixel differs or a bound is missed; 2 wrong input or set-up.",
-    context_settings={"help_option_names": ["-h", "--help"]},
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
+    **STYLE,
 )
 
 
 def main(arguments: Sequence[str]) -> int:
     """Run the command line `arguments` (without the program's name); returns the exit code."""
     return app(list(arguments), prog_name="phong75", standalone_mode=False)
+
+
+def single(command: Callable[..., int], arguments: Sequence[str], name: str) -> int:
+    """Run a program `name` that has one `command` with the command line `arguments`; returns the
+    exit code. For the campaigns in tests/, whose options are declared like those here."""
+    program = typer.Typer(add_completion=False, **STYLE)
+    program.command()(command)
+    return console.exit_code(
+        lambda: program(list(arguments), prog_name=name, standalone_mode=False)
+    )
 
 
 def _version(wanted: bool) -> None:

@@ -1,29 +1,32 @@
-"""Line, branch and toggle coverage of rtl/ by module and frame tests and trials: `make coverage`.
+# SPDX-License-Identifier: MIT
+"""Line, branch and toggle coverage of rtl/ by the tests that simulate it: `make coverage`.
 
 Lines and branches have to be covered, all of them, but for WAIVERS; toggles are reported. The
-numbers go to build/coverage.json. Exit code: 1 if something is not covered, or a test fails.
+numbers go to build/coverage.json. Exit code: 0; 1 if something is not covered, or a test fails; 2.
 """
 
 from __future__ import annotations
 
 import json
 import os
-import re
 import shutil
 import subprocess
 import sys
-from collections import defaultdict
 from pathlib import Path
+from typing import Annotated
 
-from rich.console import Console
+import typer
 from rich.table import Table
 
-from phong75.scripts import recorded
+from phong75.model.frame import InputError
+from phong75.scripts import console, options, recorded
+from phong75.scripts.main import single
 from phong75.scripts.recorded import Row
 from phong75.sim import design, environment
+from phong75.sim.coverage import points
 from phong75.sim.design import BUILD
 
-TESTS = ("tests/test_modules.py", "tests/test_frames.py", "tests/test_trials.py")
+TESTS = ("tests/test_modules.py", "tests/test_frames.py", "tests/test_configurations.py")
 
 #: (file, text of the line, reason): lines that no test can reach.
 _ELABORATED = "a function of constants: it runs when the design is elaborated, not in simulation"
@@ -36,23 +39,6 @@ WAIVERS: tuple[tuple[str, str, str], ...] = (
     ),
 )
 
-_POINT = re.compile(r"^C '(.*)' (\d+)$")
-
-
-def points(folder: Path) -> dict[tuple, int]:
-    """{(kind, file, line, what): count} of all coverage points in rtl/, over all runs."""
-    counts: dict[tuple, int] = defaultdict(int)
-    for file in sorted(folder.glob("*.dat")):
-        for line in file.read_text().splitlines():
-            if not (match := _POINT.match(line)):
-                continue
-            keys = dict(part.split("\2", 1) for part in match[1].split("\1") if "\2" in part)
-            if Path(keys["f"]).parent.name == "rtl":
-                kind = keys["page"].split("/")[0].removeprefix("v_")
-                name = Path(keys["f"]).name
-                counts[kind, name, int(keys["l"]), keys["n"] + keys["o"]] += int(match[2])
-    return counts
-
 
 def waived(name: str, line: int) -> bool:
     """Whether a line of rtl/`name` is on the list."""
@@ -60,18 +46,24 @@ def waived(name: str, line: int) -> bool:
     return any((name, text) == waiver[:2] for waiver in WAIVERS)
 
 
-def main() -> int:
-    """Run the tests with counters, add up, report; returns the exit code."""
+def main(
+    arguments: Annotated[
+        list[str] | None, typer.Argument(metavar="PYTEST", help="More arguments for pytest.")
+    ] = None,
+    record: options.Record = False,
+) -> int:
+    """Line, branch and toggle coverage of rtl/ by the tests that simulate the design."""
+    recorded.check(record)
     folder = BUILD / "coverage"
     shutil.rmtree(folder, ignore_errors=True)
-    command = [sys.executable, "-m", "pytest", *TESTS, *sys.argv[1:]]
     done = subprocess.run(
-        command, cwd=design.PACKAGE, env=os.environ | {environment.COVERAGE: str(folder)}
+        [sys.executable, "-m", "pytest", *TESTS, *(arguments or [])],
+        cwd=design.PACKAGE,
+        env=os.environ | {environment.COVERAGE: str(folder)},
     )
     found = points(folder)
     if not found:
-        print("no coverage was counted", file=sys.stderr)
-        return 1
+        raise InputError("no coverage was counted")
     table = Table(title="coverage of rtl/")
     for title in ("kind", "points", "covered", "share"):
         table.add_column(title, justify="right")
@@ -83,21 +75,27 @@ def main() -> int:
             missing += [key for key, count in of_kind.items() if not count]
         covered = sum(count > 0 for count in of_kind.values())
         summary[kind] = {"points": len(of_kind), "covered": covered}
-        share = f"{100 * covered / len(of_kind):.2f} %"
-        table.add_row(kind, str(len(of_kind)), str(covered), share)
-    Console().print(table)
-    share = {k: f"{100 * s['covered'] / s['points']:.4g} %" for k, s in summary.items()}
-    recorded.save(
-        "coverage", "make coverage", ("verilator",),
-        [Row("line and branch coverage of `rtl/`", f"{share['line']} and {share['branch']}; "
-             f"toggles {share['toggle']}", f"by module and frame tests and trials; {len(WAIVERS)} "
-             "lines waived, of a function that runs when the design is elaborated")],
-    )  # fmt: skip
+        table.add_row(
+            kind, str(len(of_kind)), str(covered), f"{100 * covered / len(of_kind):.2f} %"
+        )
+    console.show(table)
     for kind, name, line, what in sorted(missing):
-        print(f"not covered: rtl/{name}:{line} ({kind} {what})", file=sys.stderr)
+        console.failure(f"not covered: {name}:{line} ({kind} {what})")
     (BUILD / "coverage.json").write_text(json.dumps(summary, indent=2) + "\n")
-    return 1 if missing or done.returncode else 0
+    failed = bool(missing or done.returncode)
+    if record:
+        share = {k: f"{100 * s['covered'] / s['points']:.4g} %" for k, s in summary.items()}
+        recorded.record(
+            "coverage", "make coverage", ("verilator",),
+            [Row("line and branch coverage of `rtl/`", f"{share['line']} and {share['branch']}; "
+                 f"toggles {share['toggle']}", "by module and frame tests and configuration tests; "
+                 f"{len(WAIVERS)} lines waived, of a function that runs when the design is "
+                 "elaborated")],
+            failed=failed, part="pytest had arguments of its own" if arguments else "",
+            points=summary,
+        )  # fmt: skip
+    return console.FAILED if failed else console.GOOD
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(single(main, sys.argv[1:], "coverage"))
