@@ -38,12 +38,12 @@ variables_prune-random := SCENES RECORD
 goals := $(or $(MAKECMDGOALS),help)
 accepted := $(foreach goal,$(goals),$(variables_$(goal)))
 unknown := $(filter-out $(accepted) PYTHON,$(given))
-ifneq ($(unknown),)
+ifneq ($(strip $(unknown)),)
 $(error `make $(goals)` has no variable $(firstword $(unknown)); it takes $(or $(strip $(accepted)),none))
 endif
 flags := RECORD KEEP GATES AREA AGAIN
 wrong := $(foreach v,$(filter $(flags),$(given)),$(if $(filter-out 0 1,$($v))$(word 2,$($v)),$v))
-ifneq ($(wrong),)
+ifneq ($(strip $(wrong)),)
 $(error $(firstword $(wrong)) is `$($(firstword $(wrong)))`, not 0 or 1)
 endif
 

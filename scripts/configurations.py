@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import re
 from collections.abc import Iterable
 
 from phong75.model.analysis.pruning import BY_HAND
@@ -13,15 +14,15 @@ from phong75.model.frame import InputError
 from phong75.model.studies import methods
 
 
-def _plain(name: str) -> str:
+def plain(name: str) -> str:
     """A name as it is typed: `diffuse grey` of a table is diffuse_grey."""
-    return name.replace(" ", "_").replace("-", "_")
+    return re.sub(r"\W+", "_", name)
 
 
 def _groups() -> dict[str, dict[str, Config]]:
     older = {name: config for name, config in TECHNIQUES.items() if config is not DEFAULT}
-    by_hand = {_plain(name): config for name, config in BY_HAND.items()}
-    sweep = {_plain(name): config for name, config in methods.CONFIGS.items()}
+    by_hand = {plain(name): config for name, config in BY_HAND.items()}
+    sweep = {plain(name): config for name, config in methods.CONFIGS.items()}
     return {
         "the full pipeline": {DEFAULT.name: DEFAULT},
         "older techniques": older,
@@ -42,7 +43,7 @@ def unknown(what: str, name: str, names: Iterable[str], listed_by: str = "") -> 
     """The error for a `name` that is not among `names`: with the one that was meant, or all, or
     the command that lists them. what: what the user gave it to, such as --config."""
     names = list(names)
-    close = difflib.get_close_matches(_plain(name), names, 1, 0.5)
+    close = difflib.get_close_matches(plain(name), names, 1, 0.5)
     if close:
         hint = f"did you mean {close[0]}?"
     else:
@@ -53,7 +54,7 @@ def unknown(what: str, name: str, names: Iterable[str], listed_by: str = "") -> 
 def named(name: str, what: str = "--config") -> Config:
     """The configuration called `name`. Raises InputError."""
     try:
-        return CONFIGURATIONS[_plain(name)]
+        return CONFIGURATIONS[plain(name)]
     except KeyError:
         raise unknown(what, name, CONFIGURATIONS, "phong75 configs") from None
 

@@ -11,7 +11,7 @@ import json
 from rich.table import Table
 
 from phong75.scripts import console, recorded
-from phong75.scripts.configurations import unknown
+from phong75.scripts.configurations import plain, unknown
 from phong75.scripts.recorded import Row
 from phong75.sim.design import BUILD
 from phong75.sim.formal.engine import run, verdict
@@ -20,11 +20,12 @@ from phong75.sim.formal.proofs import PROOFS, Proof
 
 def choose(names: list[str], fast: bool) -> list[Proof]:
     """The proofs called `names`, or all; of these the `fast` ones only. Raises InputError."""
-    known = [proof.name for proof in PROOFS]
+    known = {plain(proof.name): proof for proof in PROOFS}
     for name in names:
-        if name not in known:
+        if plain(name) not in known:
             raise unknown("PROOF", name, known)
-    return [p for p in PROOFS if (p.name in names or not names) and (p.fast or not fast)]
+    wanted = {plain(name) for name in names or known}
+    return [p for name, p in known.items() if name in wanted and (p.fast or not fast)]
 
 
 def prove(proof: Proof) -> tuple[dict, list[str]]:

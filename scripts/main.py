@@ -235,7 +235,6 @@ def adversarial(
         bool,
         typer.Option(
             "--record",
-            "--keep",
             help="Keep an input that is worse than the kept one; `stability` replays it.",
         ),
     ] = False,

@@ -42,10 +42,9 @@ def parse_size(text: str) -> Size:
     return size
 
 
-def parse_positive(name: str, text: str) -> float:
-    """The number in `text`, an int where it is one, so that reports say 30 and not 30.0.
-
-    Raises InputError.
+def parse_positive(name: str, text: str | float) -> float:
+    """The number in `text` (or the default itself), an int where it is one, so that reports say 30
+    and not 30.0. Raises InputError.
     """
     from phong75.model.frame import InputError
 
@@ -63,23 +62,27 @@ def whole(value: float) -> float:
     return int(value) if value == int(value) else value
 
 
-def parse_count(name: str, text: str, least: int, most: int) -> int:
-    """The whole number in `text`, from `least` to `most`. Raises InputError."""
+def parse_count(name: str, value: str | int, least: int, most: int) -> int:
+    """The whole number in `value`, a text or a default, from `least` to `most`.
+
+    Raises InputError.
+    """
     from phong75.model.frame import InputError
 
+    text = str(value)
     if not (text.isascii() and text.isdigit() and least <= int(text) <= most):
         raise InputError(f"{name} is `{text}`, not a number from {least} to {most}")
     return int(text)
 
 
-def parse_grade(text: str) -> int:
-    """A speed grade of the chip. Raises InputError."""
+def parse_grade(value: str | int) -> int:
+    """The speed grade of the chip in `value`, a text or the default. Raises InputError."""
     from phong75.model.frame import InputError
     from phong75.scripts.synthesis.ecp5 import GRADES
 
-    if text not in map(str, GRADES):
-        raise InputError(f"--grade is `{text}`, not one of {', '.join(map(str, GRADES))}")
-    return int(text)
+    if str(value) not in map(str, GRADES):
+        raise InputError(f"--grade is `{value}`, not one of {', '.join(map(str, GRADES))}")
+    return int(value)
 
 
 def configuration(technique: str | None, config: str | None) -> Config:

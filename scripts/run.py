@@ -320,9 +320,9 @@ def _locked(out: Path) -> Iterator[None]:
             path.unlink(missing_ok=True)
 
 
-def main(request: RunRequest, simulate: Simulate = run_frame.simulate) -> int:
+def main(request: RunRequest) -> int:
     """Run `request`, print what came of it; returns the exit code. Raises as `run`."""
-    report = run(request, simulate, Steps())
+    report = run(request, run_frame.simulate, Steps())
     console.show(table(report))
     console.say(f"{request.out}: {' '.join(FILES)}")
     failures = run_report.failures(report)
