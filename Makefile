@@ -34,6 +34,8 @@ variables_mutate := FILES KIND SAMPLE AGAIN RECORD
 variables_coverage := RECORD
 variables_icarus := RECORD
 variables_prune-random := SCENES RECORD
+variables_test := RECORD
+variables_test-all := RECORD
 
 goals := $(or $(MAKECMDGOALS),help)
 accepted := $(foreach goal,$(goals),$(variables_$(goal)))
@@ -141,15 +143,15 @@ check: setup
 	@$(PYTHON) -m tests.run check
 
 test: setup
-	@$(PYTHON) -m tests.run test
+	@$(PYTHON) -m tests.run test $(call flag,--record-durations,RECORD)
 
 test-all: all-setup
-	@$(PYTHON) -m tests.run all
+	@$(PYTHON) -m tests.run all $(call flag,--record-durations,RECORD)
 
 test-report: page-setup
 	@command -v chromium >/dev/null || \
 	  { echo 'The report page is tested in Chromium: apt-get install chromium' >&2; exit 2; }
-	@$(PYTHON) -m pytest -m browser
+	@$(PYTHON) -m pytest tests/page
 
 mutate: setup
 	@$(PYTHON) -m tests.campaigns.mutation $(call option,--kind,KIND) $(call option,--sample,SAMPLE) \

@@ -9,12 +9,14 @@ configurations live side by side.
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import os
 import subprocess
 import sys
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 
 import cocotb_tools.config
@@ -96,6 +98,16 @@ def _replace(path: Path, text: str) -> None:
     part.replace(path)
 
 
+@contextmanager
+def _alone(target: Path):
+    """Hold a lock beside `target` while the body makes it: of several processes that need the
+    same, one makes it, and the others wait. The lock ends with its process."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with open(target.with_name(f"{target.name}.lock"), "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
 def generate_header(config: Config = DEFAULT) -> Path:
     """Write `phong_config.vh` of `config` into a folder of its own; returns the include folder."""
     text = header(config)
@@ -119,9 +131,14 @@ def runtime_built() -> bool:
 
 def runtime() -> Path:
     """The library of Verilator's runtime, compiled if need be. Raises BuildError."""
-    sources, library = _runtime_sources(), _runtime_library()
-    if library.is_file():
-        return library
+    library = _runtime_library()
+    with _alone(library.parent):
+        if not library.is_file():
+            _compile_runtime(_runtime_sources(), library)
+    return library
+
+
+def _compile_runtime(sources: list[Path], library: Path) -> None:
     folder = library.parent
     folder.mkdir(parents=True, exist_ok=True)
     jobs = [
@@ -139,7 +156,6 @@ def runtime() -> Path:
     part = folder / f"part.{os.getpid()}.a"
     run_tool(["ar", "rcs", part, *[folder / f"{name}.o" for name in _RUNTIME]])
     part.replace(library)
-    return library
 
 
 def _first_header(options: list[str]) -> Path:
@@ -149,11 +165,12 @@ def _first_header(options: list[str]) -> Path:
     """
     folder = SHARED / f"first-{digest(*options, _INCLUDE / 'verilated.h')}"
     header, compiled = folder / "first.h", folder / "first.h.gch"
-    if not compiled.is_file():
-        _replace(header, '#include "verilated.h"\n')
-        part = folder / f"{os.getpid()}.gch"
-        run_tool(["g++", *options, "-x", "c++-header", header, "-o", part])
-        part.replace(compiled)
+    with _alone(folder):
+        if not compiled.is_file():
+            _replace(header, '#include "verilated.h"\n')
+            part = folder / f"{os.getpid()}.gch"
+            run_tool(["g++", *options, "-x", "c++-header", header, "-o", part])
+            part.replace(compiled)
     return header
 
 
@@ -252,12 +269,17 @@ class Bench(Verilator):
 
         progress: called with what a phase does before each that takes seconds.
         """
-        if self.built:
-            return self.folder
-        if not runtime_built():
-            progress("compiling Verilator's runtime (once)")
-        library = runtime()
-        progress("compiling the testbench (once)")
+        if not self.built:
+            if not runtime_built():
+                progress("compiling Verilator's runtime (once)")
+            library = runtime()
+            progress("compiling the testbench (once)")
+            with _alone(self.folder):
+                if not self.built:
+                    self._make(library)
+        return self.folder
+
+    def _make(self, library: Path) -> None:
         units = [file for file in self.verilate() if file.suffix == ".cpp"]
         whole = self.folder / "whole.cpp"
         whole.write_text("".join(f'#include "{unit.name}"\n' for unit in units))
@@ -277,7 +299,6 @@ class Bench(Verilator):
         )  # fmt: skip
         objects[0].unlink()
         part.replace(self.folder / self._top)
-        return self.folder
 
     def _model(self, options: list[str]) -> Path:
         """Compile what Verilator wrote."""
@@ -290,10 +311,11 @@ class Bench(Verilator):
         """Compile the main program, of which there is one for all models with the same ports."""
         source, ports = SIM / "main.cpp", self.folder / "Vtop.h"
         target = SHARED / f"main-{digest(*options, source, ports)}.o"
-        if not target.is_file():
-            part = target.with_suffix(f".{os.getpid()}")
-            run_tool(["g++", *options, f"-I{self.folder}", "-c", source, "-o", part])
-            part.replace(target)
+        with _alone(target):
+            if not target.is_file():
+                part = target.with_suffix(f".{os.getpid()}")
+                run_tool(["g++", *options, f"-I{self.folder}", "-c", source, "-o", part])
+                part.replace(target)
         return target
 
     def _source(self) -> Path:

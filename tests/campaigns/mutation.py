@@ -44,6 +44,7 @@ from phong75.scripts.main import single
 from phong75.sim import build, design
 from phong75.sim.build import Bench, BuildError
 from phong75.sim.frame.run_frame import SimulationError
+from phong75.sim.limits import Watch
 from phong75.sim.module.units import MODULES
 from tests.configuration_tests import TRIALS, trial
 from tests.modules.benches import ModuleBench, module_bench
@@ -53,8 +54,7 @@ FOLDER = design.BUILD / "mutants"
 OUTCOMES = FOLDER / "outcomes.json"
 SEED = 75
 KINDS = ("constant", "operator")
-SIMULATION_SECONDS = 40
-BENCH_SECONDS = 60
+BENCH_SECONDS = 60  # processor time of a bench's compilation and simulation together
 MEMORY = 4 << 30  # bytes: some mutants have Verilator unroll a loop without end
 REFUSED = "does not build"
 
@@ -302,20 +302,14 @@ _OWN: dict[str, str] = {}
 _ORDER: dict[str, list[str]] = {}
 
 
-def _out_of_time(*_):
-    os.killpg(0, signal.SIGUSR1)  # whatever runs for us; we ourselves let it pass
-    raise TimeoutError
-
-
 def _start_worker(number) -> None:
-    """A process of its own for one mutant at a time: with its own folder, and an alarm clock."""
+    """A process of its own for one mutant at a time: with its own folder and session."""
     with number.get_lock():
         number.value += 1
         build.BUILD = FOLDER / f"worker{number.value}"
     logging.disable(logging.CRITICAL)
-    os.setpgrp()
-    signal.signal(signal.SIGUSR1, lambda *_: None)
-    signal.signal(signal.SIGALRM, _out_of_time)
+    os.setsid()
+    signal.signal(signal.SIGUSR1, lambda *_: None)  # it ends the tools, not this process
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
 
 
@@ -333,7 +327,12 @@ def judge(name: str, rtl: Path) -> tuple[str, str]:
     """The hash of bench `name` of the design in `rtl`, and why it rejects that; "" if it does not,
     also where it is the very bench of the design as it is."""
     shutil.rmtree(build.BUILD / "sim", ignore_errors=True)
-    signal.alarm(BENCH_SECONDS)
+    with Watch(BENCH_SECONDS, lambda: os.killpg(0, signal.SIGUSR1)) as watch:
+        made, why = _judge(name, rtl)
+    return made, "hangs" if watch.expired else why
+
+
+def _judge(name: str, rtl: Path) -> tuple[str, str]:
     made = ""
     try:
         if name in TRIALS:
@@ -346,17 +345,16 @@ def judge(name: str, rtl: Path) -> tuple[str, str]:
         if made == _OWN.get(name):
             return made, ""
         if name in TRIALS:
-            said = trial(name).complaint(bench)
-            return made, f"fails: {said}" if said else ""
+            return made, _fails(trial(name).complaint(bench))
         return made, _failing(about, bench, small)
     except BuildError:
         return made, REFUSED
-    except TimeoutError:
-        return made, "hangs"
     except (SimulationError, RuntimeError, SystemExit, OSError, ET.ParseError):
         return made, "breaks the simulation"
-    finally:
-        signal.alarm(0)
+
+
+def _fails(complaint: str) -> str:
+    return f"fails: {complaint}" if complaint else ""
 
 
 def _failing(about: ModuleBench, bench: Bench, small: str) -> str:
@@ -571,7 +569,6 @@ def main(
         return console.GOOD
 
     os.environ["COCOTB_MAX_FAILURES"] = "1"
-    os.environ["SIM_CMD_PREFIX"] = f"timeout -k 1 {SIMULATION_SECONDS}"
     used = list(dict.fromkeys(name for m in chosen for name in _benches(m.file)))
     if complaint := _know_the_design(used, jobs):
         raise InputError(complaint)

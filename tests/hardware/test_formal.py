@@ -13,12 +13,12 @@ TWINS = [(proof, proof.broken_designs[0]) for proof in FAST if proof.broken_desi
 
 @pytest.mark.parametrize("proof", FAST, ids=lambda p: p.name)
 def test_proof(proof):
-    assert not verdict(proof, run(proof, timeout=120))
+    assert not verdict(proof, run(proof, cpu_s=300))
 
 
 @pytest.mark.parametrize(("proof", "change"), TWINS, ids=lambda p: getattr(p, "name", ""))
 def test_broken_design_fails(proof, change):
-    assert not verdict(proof, run(proof, change, timeout=120), change)
+    assert not verdict(proof, run(proof, change, cpu_s=300), change)
 
 
 def test_every_broken_design_fits_the_design_once():
@@ -38,5 +38,5 @@ def test_a_broken_design_that_passes_is_an_error():
     harmless = BrokenDesign(
         "linear_interpolator", "stepped <= ~load;", "stepped <= !load;", "a_flagged", 4
     )
-    said = verdict(proof, run(proof, harmless, timeout=120), harmless)
+    said = verdict(proof, run(proof, harmless, cpu_s=300), harmless)
     assert len(said) == 1 and "should fail a_flagged; it gave pass" in said[0]
