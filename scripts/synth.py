@@ -113,7 +113,7 @@ def main(config: Config, grade: int, seeds: int, count_gates: bool, record: bool
             "make synth" + (f" GRADE={grade}" if grade != 6 else ""),
             tuple(report["tools"]),
             rows(report),
-            effort={"seeds": seeds} | ({"gate counts": 1} if count_gates else {}),
+            effort={"seeds": seeds, "gates": int(count_gates)},
             part="" if config == DEFAULT else f"{config.name} is not the default configuration",
             report={key: value for key, value in report.items() if key != "seeds"},
         )

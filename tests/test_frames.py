@@ -33,7 +33,7 @@ def test_bundled_scene(scene):
         assert result.error["max_lsb"] <= result.bound_lsb <= 1, what
         assert result.error["correctly_rounded"] >= 0.999, what
         assert done.pixels.last.sum() == 1 and done.pixels.last[-1], what
-    assert scene_results.row(scene, measured) in README, "the README's table is old: make results"
+    assert scene_results.row(scene, measured) in README, "the README's table is old: make scenes"
 
 
 def test_each_dot_is_shaded_once():

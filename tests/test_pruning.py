@@ -16,7 +16,7 @@ from phong75.model.front.scene import bundled_scenes, load_scene
 from phong75.model.front.scene_to_spans import front_end
 from phong75.model.registers import writes
 from phong75.model.twin.core.specular_power_tables import specular_power_tables
-from phong75.scripts import prune, recorded
+from phong75.scripts import main, prune, recorded
 from phong75.sim.build import Bench
 from phong75.sim.design import PACKAGE
 from phong75.sim.elaborate import instances
@@ -284,8 +284,8 @@ def test_what_was_not_measured_is_a_dash():
     assert [k for k, cell in enumerate(cells) if cell == "-"] == [6, 8]
 
 
-@pytest.mark.parametrize("wrong", ["--gates=2", "--seeds=x", "--seeds=101", "--what"])
+@pytest.mark.parametrize("wrong", ["--gates=1", "--seeds=x", "--seeds=101", "--what"])
 def test_wrong_input_is_one_line(wrong, capsys):
-    assert prune.main(["--scene=all", wrong]) == 2
+    assert main.main(["prune", "all", wrong]) == 2
     said = capsys.readouterr()
     assert said.out == "" and said.err.count("\n") == 1
