@@ -285,7 +285,7 @@ def test_what_has_no_clock_is_said(monkeypatch):
     )
     for found in rows[2:]:
         found["clock_source"] = "nextpnr, grade 6, seed 1, kept"
-    assert sweep.unrouted(rows).endswith(f"ROUTE={rows[0]['name']},{rows[1]['name']}")
+    assert sweep.unrouted(rows).endswith(f"--route {rows[0]['name']},{rows[1]['name']}")
     assert sweep.unrouted(rows[2:]) == ""
     monkeypatch.setattr(sweep, "SHOWN", [found["name"] for found in rows[1:3]])
     lines = sweep.readme(rows).split("\n")[2:]
