@@ -34,7 +34,9 @@ failed() {
 }
 install() { # install ARGUMENT...
   mkdir -p build
-  $python -m pip install --quiet --disable-pip-version-check --no-input "$@" >>$log 2>&1
+  # Without compiling all that there is to bytecode (80 MB): Python compiles what is used.
+  $python -m pip install --quiet --disable-pip-version-check --no-input --no-compile "$@" \
+    >>$log 2>&1
 }
 
 # -- the system ------------------------------------------------------------------------------------
@@ -81,6 +83,7 @@ fi
 # Phong75 itself: a link to this folder, and the program .venv/bin/phong75.
 if ! is phong75 "$(stamp pyproject.toml requirements*.in)"; then
   install --no-deps --no-build-isolation --editable . || failed
+  $python -c 'import pytest, phong75.scripts.run' >>$log 2>&1 || failed
   stamp pyproject.toml requirements*.in >.venv/phong75
 fi
 
