@@ -23,9 +23,8 @@ from phong75.model.analysis import pruning
 from phong75.model.config import DEFAULT, TECHNIQUES, Config
 from phong75.model.frame import Frame, InputError
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
 from phong75.model.registers import writes
-from phong75.model.spans import squares_only
+from phong75.model.scene_to_frame import front_end
 from phong75.model.studies.methods import CONFIGS
 from phong75.model.verilog import header
 from phong75.scripts.export import documents, stimulus, verilog
@@ -118,7 +117,7 @@ def _frame(scene: str | None, size: tuple[int, int] | None, config: Config) -> F
 
 def _check(frame: Frame, config: Config, scene: str) -> None:
     """Raise InputError if `frame` needs what `config` leaves out."""
-    if squares_only(config):
+    if config.spans_carry_squares:
         return
     full = dataclasses.replace(
         config, **{name: getattr(DEFAULT, name) for name in pruning.FEATURES}
