@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import platform
 from importlib.metadata import version
+from typing import Any
 
 from rich.markup import escape
 from rich.table import Table
@@ -25,16 +26,16 @@ def make_report(
     config: Config,
     fps: float,
     clock_hz: float,
-    simulation,
+    simulation: Any,
     comparison: Comparison,
     zero_normals: int,
-    error: dict,
+    error: dict[str, Any],
     bound_lsb: float,
     pruned_differ: int,
-    input_error: dict | None,
+    input_error: dict[str, Any] | None,
     degenerate_triangles: int,
-    wall_s: dict,
-) -> dict:
+    wall_s: dict[str, float],
+) -> dict[str, Any]:
     """The contents of `report.json`, ready for JSON: None stands for what is not defined.
 
     simulation: `sim.run_frame.SimResult`; its counters give all cycles. error, input_error: from
@@ -136,13 +137,13 @@ def table(report: dict) -> Table:
     rows.add_column(justify="right")
     rows.add_column(style="dim")
 
-    def count(value):
+    def count(value: int) -> str:
         return f"{value:,}".replace(",", " ")
 
-    def number(value, form):
+    def number(value: float | None, form: str) -> str:
         return "-" if value is None else format(value, form)
 
-    def verdict(good):
+    def verdict(good: bool) -> str:
         return "[green]ok[/]" if good else "[bold red]FAILED[/]"
 
     rows.add_row("pixels shaded", count(report["pixels"]), f"in {count(report['spans'])} spans")
