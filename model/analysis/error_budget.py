@@ -149,7 +149,7 @@ def squares(frame: Frame, config: Config) -> float | None:
     error is at most 1 + k + k (k - 1)/2 half LSBs. The bound of a span is this error at the last
     pixel, relative to the smallest |N|**2 of the span.
     Returns None if there is no bound: |N|**2 may leave its word (it is convex along the span, so
-    its maximum is at an end), or the error may exceed the margin that keeps |N x h|**2 below
+    its maximum is at an end), or the error may exceed the margin that keeps the cross square below
     |N|**2 (`MARGIN_BITS`).
     """
     spans = frame.spans[frame.spans["length"] > 0]
@@ -210,14 +210,14 @@ def half_vector_cross(half_vector: ArrayLike, config: Config) -> tuple[float, fl
 
 
 def quadratic_versine(v: ArrayLike, config: Config, square: float) -> Reals:
-    """Error of the versine v = 2 |N x h|**2/|N|**2 (float array, 0 to 1) by `quadratic_spans`.
+    """Error of the versine v = 2 C/|N|**2 (float array, 0 to 1) by `quadratic_spans`.
 
-    square: see `squares`. The terms, for q = v/2:
+    C: the cross square (see `quadratic_spans`). square: see `squares`. The terms, for q = v/2:
 
     - the quotient of the squares: relative, the margin and the error of |N|**2; absolute, the error
-      of |N x h|**2;
+      of C;
     - the reciprocal of |N|**2: twice the error of the root, and half a unit relative to 1/4;
-    - the truncation of |N x h|**2: relative where its top bit is set, absolute where the shift is
+    - the truncation of C: relative where its top bit is set, absolute where the shift is
       limited to 15;
     - the truncation of the product; and the final rounding or, at 1, the clamp by one LSB.
     """
