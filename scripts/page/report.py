@@ -15,6 +15,7 @@ import csv
 import gzip
 import itertools
 import json
+import re
 import subprocess
 from dataclasses import dataclass, field
 from io import BytesIO
@@ -23,6 +24,7 @@ from pathlib import Path
 import jinja2
 import numpy as np
 import plotly.graph_objects as go
+from markupsafe import Markup, escape
 from PIL import Image
 from plotly.offline import get_plotlyjs
 
@@ -562,6 +564,11 @@ def precision_frames() -> list[str]:
     return texts
 
 
+def code(text: str) -> Markup:
+    """`text` for the page, with what stands between backticks as code."""
+    return Markup(re.sub("`([^`]*)`", r"<code>\1</code>", str(escape(text))))
+
+
 def page(build: Path = BUILD) -> str:
     """The page from what is below `build`. Raises InputError or OSError if a file is broken."""
     scenes = [s for name in bundled_scenes() if (s := scene_result(name, build))]
@@ -585,6 +592,7 @@ def page(build: Path = BUILD) -> str:
         loader=jinja2.FileSystemLoader(Path(__file__).parent), autoescape=True,
         undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
+    environment.filters["code"] = code
     return environment.get_template("report.html.j2").render(
         scenes=scenes, results=results, stability=stability, precision=precision,
         clock_note=clock_note(precision) if precision else "",

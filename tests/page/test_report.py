@@ -217,6 +217,10 @@ def test_the_page_of_all_scenes_weighs_less_than_5_mb(build, tmp_path):
     assert len(text.encode()) < report.LIMIT_BYTES == 5_000_000
 
 
+def test_backticks_are_code():
+    assert report.code("a `b` <c> `<d>`") == "a <code>b</code> &lt;c&gt; <code>&lt;d&gt;</code>"
+
+
 def test_the_clock_is_named():
     rows = [point("a", str(k), 1000, 1.0) for k in range(3)]
     shown = report.precision_plots(rows)["frame_us/rms_lsb"]["data"][1]["marker"]["symbol"]
