@@ -19,11 +19,16 @@ def includes(config: Config = DEFAULT) -> list[str]:
 
 def instances(config: Config = DEFAULT, top: str = "phong_pipeline") -> Counter[str]:
     """How many instances of each module there are in `top`, itself included. Raises BuildError."""
+    return elaborated([*includes(config), design.module_file(top)], top)
+
+
+def elaborated(options: list, top: str) -> Counter[str]:
+    """The same as `instances` for whatever design Verilator's `options` give. Raises BuildError."""
     with tempfile.TemporaryDirectory() as folder:
         run_tool(
             [
                 "verilator", "--json-only", "--no-timing", "-Wno-fatal", "--Mdir", folder,
-                "--top-module", top, *includes(config), design.module_file(top),
+                "--top-module", top, *options,
             ]
         )  # fmt: skip
         with open(f"{folder}/V{top}.tree.json") as file:
