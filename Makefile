@@ -29,7 +29,7 @@ variables_formal := RECORD
 variables_activity := RECORD
 variables_waves := MODULE CONFIG
 variables_bench := RECORD
-variables_export := CONFIG OUT
+variables_export := CONFIG OUT SCENE SIZE
 variables_mutate := FILES KIND SAMPLE AGAIN RECORD
 variables_coverage := RECORD
 variables_icarus := RECORD
@@ -127,14 +127,15 @@ bench: setup
 	@$(PHONG75) bench $(record)
 
 export: setup
-	@$(PHONG75) export $(config) $(call option,--out,OUT)
+	@$(PHONG75) export $(config) $(call option,--out,OUT) $(call option,--scene,SCENE) \
+	  $(call option,--size,SIZE)
 
 configs: setup
 	@$(PHONG75) configs
 
 # -- for developers --------------------------------------------------------------------------------
 
-.PHONY: lint check test test-all test-report mutate coverage icarus prune-random docs hardware clean
+.PHONY: lint check test test-all test-report mutate coverage icarus prune-random docs clean
 
 lint: setup
 	@$(PYTHON) -m phong75.scripts.lint
@@ -169,9 +170,6 @@ prune-random: setup
 docs: docs-setup
 	@$(PYTHON) -m phong75.scripts.docs
 
-hardware: setup
-	@$(PYTHON) -m phong75.scripts.recorded
-
 clean:
 	@rm -rf build .hypothesis .ruff_cache
 	@find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +
@@ -203,7 +201,6 @@ help:
 	@echo '  make netlist       frames through the netlist'
 	@echo '  make formal        proofs of the flow control'
 	@echo '  make activity      register toggles a pixel'
-	@echo '  make hardware      the table of the last results of all of these'
 	@echo 'Develop:'
 	@echo '  make check         the fast tests; make test: all that need no tools besides;'
 	@echo '                     make test-all: everything, as CI'

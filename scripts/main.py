@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -289,7 +290,7 @@ def formal(
     proofs: Annotated[
         list[str] | None, typer.Argument(metavar="PROOF", help="Names of proofs; else all.")
     ] = None,
-    fast: Annotated[bool, typer.Option("--fast", help="Only those that `make test` runs.")] = False,
+    fast: Annotated[bool, typer.Option("--fast", help="Only the fast ones.")] = False,
     record: options.Record = False,
 ) -> int:
     """Prove flow control and interpolators; broken designs must fail."""
@@ -318,6 +319,45 @@ def waves(
     from phong75.scripts import waves as engine
 
     return engine.main(module, options.configuration(None, config))
+
+
+@app.command()
+def export(
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Folder of the export.")
+    ] = None,
+    config: options.ConfigName = None,
+    prefix: Annotated[
+        str | None,
+        typer.Option(
+            "--prefix",
+            metavar="TEXT",
+            help="Beginning of every module name; default: the name of the configuration.",
+        ),
+    ] = None,
+    scene: Annotated[
+        str | None,
+        typer.Option(
+            "--scene",
+            metavar="SCENE",
+            help="What the stimulus shows: a bundled scene, or the path of a scene or a mesh.",
+            autocompletion=options.scenes,
+        ),
+    ] = None,
+    size: options.AnySize = None,
+    prune: Annotated[
+        bool, typer.Option("--prune", help="Leave out what the SCENE at this size does not need.")
+    ] = False,
+    header: Annotated[
+        bool, typer.Option("--header", help="Renew the generated files that the checkout keeps.")
+    ] = False,
+) -> int:
+    """Write a configuration as a folder of plain Verilog, with a testbench and its stimulus."""
+    from phong75.scripts import export as engine
+
+    if header:
+        return engine.renew()
+    return engine.main(options.configuration(None, config), out, prefix, scene, size, prune)
 
 
 @app.command()

@@ -15,15 +15,17 @@ from phong75.model import twin
 from phong75.model.config import DEFAULT, TECHNIQUES
 from phong75.model.frame import InputError
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import pack, record_bits
 from phong75.scripts import export as package
-from phong75.scripts.export import configurations, documents, export, main
+from phong75.scripts.configurations import CONFIGURATIONS
+from phong75.scripts.export import documents, export
+from phong75.scripts.main import main
 from phong75.sim import build
 from phong75.sim.build import BuildError, run_tool
 from phong75.sim.elaborate import elaborated, instances
 
-WIDTH_12 = configurations()["width_12"]
+WIDTH_12 = CONFIGURATIONS["width_12"]
 GOURAUD, FLAT = TECHNIQUES["gouraud"], TECHNIQUES["flat"]
 SMALL = (48, 32)
 
@@ -333,8 +335,8 @@ def test_a_folder_that_is_no_export_is_left_alone(tmp_path):
     "arguments, message",
     [
         (["--config", "width_13"], "--out is missing"),
-        (["--config", "nonesuch", "--out", "x"], "there is no configuration `nonesuch`"),
-        (["--out", "x", "--size", "48"], "the size is `48`"),
+        (["--config", "nonesuch", "--out", "x"], "there is no `nonesuch`"),
+        (["--out", "x", "--size", "48"], "--size is `48`"),
         (["--out", "x", "--prefix", "7_"], "the prefix `7_` is not the beginning"),
         (["--out", "x", "--prune"], "pruning needs a scene"),
         (["--out", "x", "--scene", "nonesuch"], "nonesuch"),
@@ -342,7 +344,7 @@ def test_a_folder_that_is_no_export_is_left_alone(tmp_path):
 )
 def test_wrong_arguments_give_one_line(arguments, message, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    assert main(arguments) == 2
+    assert main(["export", *arguments]) == 2
     error = capsys.readouterr().err
     assert message in error and error.count("\n") == 1
     assert not os.listdir(tmp_path)
