@@ -7,8 +7,12 @@ Errors are in LSB of an 8-bit colour code.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+
+from phong75.model.arrays import ArrayLike, Ints
+from phong75.model.twin import Pixels
 
 
 @dataclass(frozen=True)
@@ -37,7 +41,7 @@ class Comparison:
     first: Mismatch | None
 
 
-def compare(expected, got) -> Comparison:
+def compare(expected: Pixels, got: Pixels) -> Comparison:
     """Compare two streams of pixels (`model.twin.Pixels`) pixel by pixel, bit for bit.
 
     Position, colour and the last flag must be equal. A pixel that only one stream has is a
@@ -55,22 +59,22 @@ def compare(expected, got) -> Comparison:
     return Comparison(pixels, int(differs.sum()), first)
 
 
-def _rows(pixels):
+def _rows(pixels: Pixels) -> Ints:
     """The fields of all pixels, int64[n, 6]."""
     return np.column_stack([pixels.x, pixels.y, pixels.rgb, pixels.last]).astype(np.int64)
 
 
-def _row(rows, index):
+def _row(rows: Ints, index: int) -> tuple[int, ...] | None:
     """The fields of pixel `index` as a tuple; None if the stream is shorter."""
     return tuple(int(v) for v in rows[index]) if index < len(rows) else None
 
 
-def rounded(exact) -> np.ndarray:
+def rounded(exact: ArrayLike) -> Ints:
     """The correctly rounded codes floor(exact + 1/2), int64, of `exact` = 255 clamp(S, 0, 1)."""
     return np.floor(np.asarray(exact, np.float64) + 0.5).astype(np.int64)
 
 
-def error_metrics(codes, exact) -> dict:
+def error_metrics(codes: ArrayLike, exact: ArrayLike) -> dict[str, Any]:
     """Error of `codes` (integers[n, 3]) against `exact` = 255 clamp(S, 0, 1) (float64[n, 3]).
 
     `exact` is not rounded, so that perfect codes have errors of up to 1/2 LSB. Pass only shaded

@@ -9,11 +9,20 @@ from __future__ import annotations
 
 import numpy as np
 
+from phong75.model.arrays import ArrayLike, Ints, Reals, Spans
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import ExactFrame, Frame
 
 
-def shade(normal, cp_d, cp_rest, weight, exponent, eye, two_sided: bool):
+def shade(
+    normal: Reals,
+    cp_d: Reals,
+    cp_rest: Reals,
+    weight: Reals,
+    exponent: Reals,
+    eye: Reals,
+    two_sided: bool,
+) -> Reals:
     """255 clamp(S, 0, 1) by the paper's eq. (3), float64[n, 3].
 
     normal: float64[n, 3], any length, light frame.
@@ -42,7 +51,7 @@ def shade(normal, cp_d, cp_rest, weight, exponent, eye, two_sided: bool):
     return 255 * np.clip(s, 0, 1)
 
 
-def _pixels(spans, start, step):
+def _pixels(spans: Spans, start: Reals, step: Reals) -> tuple[Reals, Ints]:
     """Interpolated vectors float64[n, 3] and material indices int[n] of all pixels of `spans`.
 
     start, step: float64[spans, 3].
@@ -53,7 +62,7 @@ def _pixels(spans, start, step):
     return start[span] + k[:, None] * step[span], spans["material"][span]
 
 
-def eye_of(half_vector) -> np.ndarray:
+def eye_of(half_vector: ArrayLike) -> Reals:
     """The unit eye vector u, float64[..., 3], light frame: u = 2 (h.k) h - k, k = (0, 0, 1).
 
     half_vector: (hx, hz), numbers or arrays[...], of any scale; h is the unit vector along

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from phong75.model.arrays import ArrayLike, Reals
 from phong75.model.front.mesh import apply_matrix, normalize
 
 #: Default direction from the target towards the eye, for scenes whose z axis points up.
@@ -82,7 +83,7 @@ class Camera:
         return -1.0 / w if self.projection == "perspective" else -z
 
 
-def view_axes(back, up) -> np.ndarray | None:
+def view_axes(back: ArrayLike, up: ArrayLike) -> Reals | None:
     """Camera axes float64[3, 3]: unit rows right, up, back.
 
     back: vector from the target towards the eye. up: vector that points upward in the picture.
@@ -96,7 +97,9 @@ def view_axes(back, up) -> np.ndarray | None:
     return np.stack([right, np.cross(back, right), back])
 
 
-def fit_orthographic(points, axes, target, aspect: float) -> tuple[np.ndarray, float]:
+def fit_orthographic(
+    points: Reals, axes: Reals, target: ArrayLike | None, aspect: float
+) -> tuple[Reals, float]:
     """Target (float64[3]) and height (scene units) of an orthographic picture of all `points`.
 
     points: float64[V, 3]. axes: see `Camera`. target: the point in the middle of the picture
@@ -106,16 +109,18 @@ def fit_orthographic(points, axes, target, aspect: float) -> tuple[np.ndarray, f
     low, high = view.min(axis=0), view.max(axis=0)
     if target is None:
         centre = (low + high) / 2.0
-        target = centre @ axes
+        middle = centre @ axes
     else:
-        target = np.asarray(target, float)
-        centre = axes @ target
+        middle = np.asarray(target, float)
+        centre = axes @ middle
     reach = np.maximum(high - centre, centre - low)
     height = 2.0 * max(reach[1], reach[0] / aspect) / FILL
-    return target, height if height > 0 else 1.0
+    return middle, height if height > 0 else 1.0
 
 
-def fit_perspective(points, axes, target, aspect: float, fov: float):
+def fit_perspective(
+    points: Reals, axes: Reals, target: ArrayLike | None, aspect: float, fov: float
+) -> tuple[Reals, float]:
     """Target (float64[3]) and distance from eye to target of a perspective picture of all `points`.
 
     fov: vertical field of view, degrees. The other arguments are those of `fit_orthographic`.
@@ -132,7 +137,7 @@ def fit_perspective(points, axes, target, aspect: float, fov: float):
     return target, max(distance, 1e-3 * size)
 
 
-def light_frame(light, eye) -> tuple[np.ndarray, np.ndarray]:
+def light_frame(light: ArrayLike, eye: ArrayLike) -> tuple[Reals, Reals]:
     """Light frame of the paper (Phong 1975): z points towards the light, u_y = 0 and u_x >= 0.
 
     light, eye: non-zero scene vectors towards the light and the eye (3 reals each).

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from phong75.model.arrays import ArrayLike, Ints, Reals
 from phong75.model.front.mesh import normalize
 
 
@@ -35,7 +36,9 @@ class ScanLineWeights:
     across: np.ndarray
 
 
-def scan_line_weights(x, y, px, py) -> ScanLineWeights:
+def scan_line_weights(
+    x: Reals | Ints, y: Reals | Ints, px: Reals | Ints, py: Reals | Ints
+) -> ScanLineWeights:
     """Weights of the points (px, py) in the triangles x, y.
 
     px, py: [n]. x, y: [n, 3], vertices sorted by y. Each scan line must cross its triangle:
@@ -59,7 +62,7 @@ def scan_line_weights(x, y, px, py) -> ScanLineWeights:
     )
 
 
-def interpolate(values, weights: ScanLineWeights, normalize_edges: bool = False) -> np.ndarray:
+def interpolate(values: Reals, weights: ScanLineWeights, normalize_edges: bool = False) -> Reals:
     """Interpolate `values` (float64[n, 3, C], vertices sorted by y) to the points: float64[n, C].
 
     normalize_edges: normalize the vectors (C = 3) at both edges before the step along the line.
@@ -74,12 +77,14 @@ def interpolate(values, weights: ScanLineWeights, normalize_edges: bool = False)
     return _mix(on_long, on_short, weights.across)
 
 
-def _mix(a, b, t):
+def _mix(a: Reals, b: Reals, t: Reals) -> Reals:
     """Linear interpolation from a (t = 0) to b (t = 1): float64[n, C]."""
     return a + (b - a) * t[:, None]
 
 
-def interpolate_at(triangle, values, point, normalize_edges: bool = False) -> np.ndarray:
+def interpolate_at(
+    triangle: ArrayLike, values: ArrayLike, point: ArrayLike, normalize_edges: bool = False
+) -> Reals:
     """Interpolate `values` at one point of one triangle: float64[C].
 
     triangle: [3, 2], x and y of the vertices in any order. values: [3, C]. point: (x, y), inside.

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from phong75.model.arrays import ArrayLike, Ints, Reals
 from phong75.model.frame import InputError
 
 #: Supported mesh files, by suffix.
@@ -45,7 +46,12 @@ class Mesh:
     normals: np.ndarray
     degenerate: int = 0
 
-    def transformed(self, scale=(1.0, 1.0, 1.0), rotate=(0.0, 0.0, 0.0), translate=(0, 0, 0)):
+    def transformed(
+        self,
+        scale: ArrayLike = (1.0, 1.0, 1.0),
+        rotate: ArrayLike = (0.0, 0.0, 0.0),
+        translate: ArrayLike = (0, 0, 0),
+    ) -> Mesh:
         """A new Mesh: this one scaled, then rotated, then translated.
 
         scale: a number or 3 (x, y, z). rotate: 3 angles in degrees about the fixed x, y and z
@@ -89,7 +95,7 @@ def apply_matrix(matrix: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     return np.stack([row[0] * x + row[1] * y + row[2] * z for row in matrix], axis=-1)
 
 
-def rotation_matrix(degrees) -> np.ndarray:
+def rotation_matrix(degrees: ArrayLike) -> Reals:
     """Rotation matrix float64[3, 3]: about the fixed x, then y, then z axis by `degrees` (3)."""
     (cx, cy, cz), (sx, sy, sz) = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     about_x = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
@@ -193,7 +199,13 @@ def _smooth_groups(welded: np.ndarray, flat: np.ndarray, min_cosine: float) -> n
         label = spread
 
 
-def make_mesh(where: str, vertices, faces, normals=None, crease: float | None = None) -> Mesh:
+def make_mesh(
+    where: str,
+    vertices: ArrayLike,
+    faces: ArrayLike,
+    normals: ArrayLike | None = None,
+    crease: float | None = None,
+) -> Mesh:
     """Check raw arrays and make a Mesh of them.
 
     where: name of the mesh in error messages. vertices: [V, 3]. faces: [F, 3]. normals: [F, 3, 3]
@@ -235,7 +247,7 @@ def make_mesh(where: str, vertices, faces, normals=None, crease: float | None = 
     return Mesh(vertices, faces, normals, int(np.count_nonzero(~good)))
 
 
-def load_mesh(path, crease: float | None = None) -> Mesh:
+def load_mesh(path: str | Path, crease: float | None = None) -> Mesh:
     """Read an OBJ, PLY, STL or GLB file through trimesh; all parts of the file become one Mesh.
 
     Normals of the file are kept unless `crease` (degrees) is given. Files without corner normals
@@ -291,7 +303,7 @@ def _volume(mesh: Mesh) -> float:
     return float(np.sum(a * np.cross(b, c)) / 6.0)
 
 
-def _read_parts(path: Path):
+def _read_parts(path: Path) -> tuple[Reals, Ints, Reals | None]:
     """Vertices [V, 3], faces [F, 3] and corner normals [F, 3, 3] (or None) of a file.
 
     The parts of the file are transformed to scene coordinates and joined. Raises InputError.
@@ -313,7 +325,8 @@ def _read_parts(path: Path):
     except Exception as error:  # trimesh's readers pass on any exception of their libraries
         raise InputError(f"{path}: not a readable mesh: {_line(error)}") from None
 
-    all_vertices, all_faces, all_normals, offset = [], [], [], 0
+    all_vertices, all_faces, offset = [], [], 0
+    all_normals: list[Reals | None] = []
     for node in sorted(scene.graph.nodes_geometry):
         matrix, name = scene.graph.get(node)
         part = scene.geometry[name]
@@ -347,7 +360,7 @@ def _read_parts(path: Path):
         computed = corner_normals(vertices, faces, DEFAULT_CREASE)
         pieces = np.split(computed, np.cumsum([len(f) for f in all_faces])[:-1])
         all_normals = [c if n is None else n for c, n in zip(pieces, all_normals, strict=True)]
-    return vertices, faces, np.concatenate(all_normals)
+    return vertices, faces, np.concatenate([n for n in all_normals if n is not None])
 
 
 def _check_obj_indices(path: Path) -> None:

@@ -50,11 +50,14 @@ import difflib
 import inspect
 import math
 import tomllib
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from phong75.model.arrays import ArrayLike, Reals
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import InputError
 from phong75.model.front import shapes
@@ -76,7 +79,7 @@ DEFAULT_SIZE = (640, 480)
 DEFAULT_BACKGROUND = (0.05, 0.06, 0.08)
 INTERPOLATIONS = ("linear", "normalized_edges")
 
-SHAPES = {
+SHAPES: dict[str, Callable[..., Mesh]] = {
     "sphere": shapes.sphere,
     "torus": shapes.torus,
     "cone": shapes.cone,
@@ -106,9 +109,9 @@ class Material:
     weight_zn: tuple[float, ...] = (0.0, 1.0)
     weight_values: tuple[float, ...] = (0.4, 0.4)
 
-    def weight(self, zn) -> np.ndarray:
+    def weight(self, zn: ArrayLike) -> Reals:
         """W at `zn` (any shape), float64."""
-        return np.interp(zn, self.weight_zn, self.weight_values)
+        return np.interp(np.asarray(zn, float), self.weight_zn, self.weight_values)
 
 
 @dataclass
@@ -154,7 +157,7 @@ def bundled_scenes() -> list[str]:
 
 
 def load_scene(
-    name_or_path, size: tuple[int, int] | None = None, config: Config = DEFAULT
+    name_or_path: str | Path, size: tuple[int, int] | None = None, config: Config = DEFAULT
 ) -> Scene:
     """Load a bundled scene (by name), a scene file (.toml) or a mesh file.
 
@@ -183,7 +186,7 @@ def load_scene(
     raise InputError(f"{name}: neither a scene (.toml) nor a mesh ({', '.join(MESH_SUFFIXES)})")
 
 
-def _mesh_scene(path: Path, size, config: Config) -> Scene:
+def _mesh_scene(path: Path, size: tuple[int, int] | None, config: Config) -> Scene:
     """A scene that shows one mesh file with the default camera, light and material."""
     mesh = load_mesh(path)
     # In STL files (3D printing) z usually points up; in the other formats, y.
@@ -207,12 +210,13 @@ def _mesh_scene(path: Path, size, config: Config) -> Scene:
     )
 
 
-def _scene(root: _Table, path: Path, size, config: Config) -> Scene:
+def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Config) -> Scene:
     width, height = _size(root, size, config)
     background = root.reals("background", 3, DEFAULT_BACKGROUND, 0.0, 1.0)
     two_sided = root.boolean("two_sided", False)
     interpolation = root.choice("interpolation", INTERPOLATIONS, "linear")
-    materials, indices = [], {}
+    materials: list[Material] = []
+    indices: dict[str | None, int] = {}
     for name, table in root.tables_by_name("materials"):
         indices[name] = len(materials)
         materials.append(_material(table))
@@ -259,7 +263,7 @@ def _read_toml(path: Path) -> dict:
         raise InputError(f"{path}: malformed TOML: {message}") from None
 
 
-def _size(root: _Table, size, config: Config) -> tuple[int, int]:
+def _size(root: _Table, size: tuple[int, int] | None, config: Config) -> tuple[int, int]:
     """(width, height) in pixels: `size`, else the scene file's, else the default."""
     in_file = root.value("size", None)
     for where, value in ((root.where("size"), in_file), ("size", size)):
@@ -315,7 +319,13 @@ def _weight(table: _Table) -> tuple[tuple[float, ...], tuple[float, ...]]:
     return (0.0, 1.0), (constant, constant)
 
 
-def _object(table: _Table, number: int, path: Path, materials, indices) -> SceneObject:
+def _object(
+    table: _Table,
+    number: int,
+    path: Path,
+    materials: list[Material],
+    indices: dict[str | None, int],
+) -> SceneObject:
     shape = table.choice("shape", tuple(SHAPES), None)
     file = table.text("mesh", None)
     label = table.text("name", shape or file or f"object {number}")
@@ -415,6 +425,7 @@ def _camera(table: _Table, points: np.ndarray, aspect: float) -> Camera:
         if up is not None:
             raise table.error("up", f"= {_show(up)} is parallel to the line of sight")
         axes = view_axes(back, (0.0, 1.0, 0.0))  # the camera looks along the default `up`
+        assert axes is not None
 
     if perspective:
         fov = fov or DEFAULT_FOV
@@ -444,7 +455,7 @@ def _light(table: _Table, camera: Camera) -> np.ndarray:
     return direction / np.linalg.norm(direction)
 
 
-def _show(value) -> str:
+def _show(value: object) -> str:
     """`value` on one line of at most 60 characters."""
     text = " ".join(repr(list(value) if isinstance(value, tuple) else value).split())
     return text if len(text) <= 60 else text[:57] + "..."
@@ -469,12 +480,12 @@ class _Table:
         """An InputError about `key`."""
         return InputError(f"{self.where(key)} {message}".replace(" : ", ": "))
 
-    def value(self, key: str, default):
+    def value(self, key: str, default: object) -> Any:
         """The unchecked value of `key`."""
         self.known.add(key)
         return self.values.get(key, default)
 
-    def child(self, key: str, values) -> _Table:
+    def child(self, key: str, values: object) -> _Table:
         """`values` of `key` as a table."""
         if not isinstance(values, dict):
             raise self.error(key, f"= {_show(values)} is not a table")
@@ -496,7 +507,7 @@ class _Table:
             raise self.error(key, "is not a list of tables: write [[objects]]")
         return [self.child(f"{key}[{i}]", v) for i, v in enumerate(value)]
 
-    def _number(self, key: str, value, low: float, high: float) -> float:
+    def _number(self, key: str, value: object, low: float, high: float) -> float:
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise self.error(key, f"= {_show(value)} is not a number")
         if not math.isfinite(value):
@@ -505,7 +516,7 @@ class _Table:
             raise self.error(key, f"= {value:g} is outside [{low:g}, {high:g}]")
         return float(value)
 
-    def real(self, key: str, default, low: float = -1e30, high: float = 1e30):
+    def real(self, key: str, default: float | None, low: float = -1e30, high: float = 1e30) -> Any:
         """A real number from `low` to `high`."""
         value = self.value(key, None)
         return default if value is None else self._number(key, value, low, high)
@@ -524,7 +535,14 @@ class _Table:
             raise self.error(key, f"= {_show(value)} is not a list of numbers")
         return [self._number(f"{key}[{i}]", v, low, high) for i, v in enumerate(value)]
 
-    def reals(self, key: str, count: int, default=None, low: float = -1e30, high: float = 1e30):
+    def reals(
+        self,
+        key: str,
+        count: int,
+        default: tuple[float, ...] | None = None,
+        low: float = -1e30,
+        high: float = 1e30,
+    ) -> Any:
         """A tuple of `count` real numbers from `low` to `high`."""
         if self.value(key, None) is None:
             return default
@@ -540,14 +558,14 @@ class _Table:
             raise self.error(key, f"= {_show(value)} is not true or false")
         return value
 
-    def text(self, key: str, default):
+    def text(self, key: str, default: str | None) -> Any:
         """A string."""
         value = self.value(key, default)
         if value is not None and not isinstance(value, str):
             raise self.error(key, f"= {_show(value)} is not a string")
         return value
 
-    def choice(self, key: str, choices: tuple[str, ...], default):
+    def choice(self, key: str, choices: tuple[str, ...], default: str | None) -> Any:
         """One of the strings `choices`."""
         value = self.text(key, default)
         if value is not None and value != default and value not in choices:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from phong75.model.arrays import Flags, Reals
 from phong75.model.front.mesh import Mesh, corner_normals, normalize
 
 TEAPOT_FILE = Path(__file__).parent.parent / "data" / "newell_teapot_patches.txt"
@@ -158,15 +159,15 @@ def patch_surface(control: np.ndarray, divisions: int) -> tuple[np.ndarray, np.n
     t = np.linspace(0.0, 1.0, divisions + 1)
     value, slope = bernstein(t), bernstein_slope(t)
 
-    def surface(in_u, in_v):
+    def surface(in_u: Reals, in_v: Reals) -> Reals:
         return np.einsum("ui,pijc,vj->puvc", in_u, control, in_v)
 
     along_u, along_v = surface(slope, value), surface(value, slope)
     mixed = surface(slope, slope)
     size = np.max(np.abs(control), axis=(1, 2, 3))[:, None, None]
 
-    def vanishes(d):
-        return (np.max(np.abs(d), axis=-1) < 1e-9 * size)[..., None]
+    def vanishes(derivative: Reals) -> Flags:
+        return (np.max(np.abs(derivative), axis=-1) < 1e-9 * size)[..., None]
 
     # The limit is taken from inside the patch: increasing u at u = 0, decreasing u at u = 1.
     inward_u = np.where(t < 0.5, 1.0, -1.0)[None, :, None, None]

@@ -24,6 +24,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from phong75.model.arrays import Flags, Ints, Reals
+
 #: Vertices are snapped to multiples of 2**-12 pixel. The shift is invisible, and all products of
 #: coordinates within the guard band stay below 2**63.
 SUBPIXEL_BITS = 12
@@ -57,7 +59,7 @@ class Triangles:
     def __len__(self) -> int:
         return len(self.x)
 
-    def take(self, which) -> Triangles:
+    def take(self, which: Ints | Flags) -> Triangles:
         """The triangles selected by `which` (a mask or indices)."""
         return Triangles(
             self.x[which],
@@ -83,12 +85,12 @@ class Segments:
     def __len__(self) -> int:
         return len(self.y)
 
-    def take(self, which) -> Segments:
+    def take(self, which: Ints | Flags) -> Segments:
         """The segments selected by `which` (a mask or indices)."""
         return Segments(self.triangle[which], self.y[which], self.left[which], self.right[which])
 
 
-def clip(corners: np.ndarray, value: np.ndarray, material: np.ndarray, near: float):
+def clip(corners: Reals, value: Reals, material: Ints, near: float) -> tuple[Reals, Reals, Ints]:
     """Clip triangles at the near plane w = `near` and at the guard band around the screen.
 
     corners: float64[T, 3, 4], homogeneous screen points (X, Y, w, z) of `Camera.project`. value:
@@ -138,20 +140,23 @@ def _cut(values: np.ndarray, distance: np.ndarray, inner: int, outer: int) -> np
     return values[:, inner] + t[:, None] * (values[:, outer] - values[:, inner])
 
 
-def set_up(x, y, depth, value, material, two_sided: bool) -> Triangles:
+def set_up(
+    x: Reals, y: Reals, depth: Reals, value: Reals, material: Ints, two_sided: bool
+) -> Triangles:
     """Snap vertices to the grid; drop back faces (unless `two_sided`) and faces without area.
 
     x, y: float64[T, 3], pixels, magnitudes up to about GUARD. Front faces are counter-clockwise,
     which is a negative area with y downward. depth, value, material: see `Triangles`, vertices in
     the order of x and y.
     """
-    x, y = (np.floor(c * GRID + 0.5).astype(np.int64) for c in (x, y))
-    area = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0])
+    gx, gy = (np.floor(c * GRID + 0.5).astype(np.int64) for c in (x, y))
+    area = (gx[:, 1] - gx[:, 0]) * (gy[:, 2] - gy[:, 0])
+    area -= (gx[:, 2] - gx[:, 0]) * (gy[:, 1] - gy[:, 0])
     keep = np.flatnonzero(area != 0 if two_sided else area < 0)
-    order = np.argsort(y[keep], axis=1, kind="stable")
+    order = np.argsort(gy[keep], axis=1, kind="stable")
     row = keep[:, None]
     return Triangles(
-        x[row, order], y[row, order], depth[row, order], value[row, order], material[keep]
+        gx[row, order], gy[row, order], depth[row, order], value[row, order], material[keep]
     )
 
 
@@ -172,7 +177,7 @@ def _first_centre(coordinate: np.ndarray) -> np.ndarray:
     return -((GRID // 2 - coordinate) // GRID)
 
 
-def cover(triangles: Triangles, first, end, width: int) -> Segments:
+def cover(triangles: Triangles, first: Ints, end: Ints, width: int) -> Segments:
     """The strips of triangles on the scan lines first <= y < end, within 0 <= x < width.
 
     first, end: int64[T], within the lines of `line_range`. Strips without a pixel are left out.
@@ -201,7 +206,7 @@ def cover(triangles: Triangles, first, end, width: int) -> Segments:
     return Segments(t, line, left, right).take(left < right)
 
 
-def _crossing(xa, ya, xb, yb, y) -> np.ndarray:
+def _crossing(xa: Ints, ya: Ints, xb: Ints, yb: Ints, y: Ints) -> Ints:
     """The first pixel whose centre is on or to the right of the edge a-b (ya < yb) at height `y`.
 
     All coordinates are int64[n] in 1/GRID pixel; the result is in pixels.

@@ -19,10 +19,12 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from phong75.model.analysis import error_budget, reference
+from phong75.model.arrays import Ints, Reals, Trace
 from phong75.model.config import DEFAULT as C
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
 from phong75.model.twin.core.phong_unit import shade
@@ -71,7 +73,9 @@ class Family:
             for angle in np.linspace(0, np.pi, 33):
                 h = half_vector_codes(np.array([np.sin(angle), 0, np.cos(angle)]), C)
                 frame = Frame(1, 1, h, False, (0, 0, 0), table, np.zeros(1, SPAN_DTYPE))
-                worst = max(worst, float(error_budget.bound_lsb(frame)))
+                bound = error_budget.bound_lsb(frame)
+                assert bound is not None  # only `quadratic_spans` may have none
+                worst = max(worst, bound)
         return worst
 
 
@@ -95,7 +99,7 @@ class Inputs:
     diffuse: np.ndarray
     weight: np.ndarray
 
-    def take(self, which) -> Inputs:
+    def take(self, which: Ints | slice | list[int]) -> Inputs:
         """The points selected by `which` (a mask or indices)."""
         return Inputs(*(getattr(self, f)[..., which] for f in self.__dataclass_fields__))
 
@@ -108,7 +112,7 @@ def _points(inputs: Inputs) -> np.ndarray:
     return np.where(right, inputs.weight[1][:, None], inputs.weight[0][:, None])
 
 
-def evaluate(inputs: Inputs):
+def evaluate(inputs: Inputs) -> tuple[Ints, Reals, Reals]:
     """Shade all points with the twin and in float64, one channel.
 
     Returns (codes int[n], 255 S of the twin before the final rounding, exact 255 S), float64[n].
@@ -122,8 +126,9 @@ def evaluate(inputs: Inputs):
         inputs.exponent,
     )  # fmt: skip
     # Each point has a material and a half vector of its own. The twin broadcasts over both.
-    frame = Frame(1, 1, inputs.half_vector, False, (0, 0, 0), table, np.zeros(0, SPAN_DTYPE))
-    trace: dict = {}
+    half_vector: Any = inputs.half_vector
+    frame = Frame(1, 1, half_vector, False, (0, 0, 0), table, np.zeros(0, SPAN_DTYPE))
+    trace: Trace = {}
     codes = shade(inputs.normal, material, frame, C, trace)[0]
     white = (1 << C.colour_bits) - 1
     unrounded = white * C.intensity.real(trace["colour_channel.intensity"][0])
@@ -141,7 +146,7 @@ def _objective(inputs: Inputs) -> np.ndarray:
     return np.where(exact < 252, np.abs(unrounded - exact), 0)
 
 
-def _start(family: Family, count: int, rng) -> tuple[Inputs, np.ndarray]:
+def _start(family: Family, count: int, rng: np.random.Generator) -> tuple[Inputs, Reals]:
     """`count` random points, half of them near a highlight, and their eye angles (radians)."""
     angle = rng.uniform(0, np.pi, count)
     half = np.stack([np.sin(angle / 2), 0 * angle, np.cos(angle / 2)])
@@ -160,11 +165,13 @@ def _start(family: Family, count: int, rng) -> tuple[Inputs, np.ndarray]:
     return inputs, angle
 
 
-def _step(family: Family, inputs: Inputs, angle, rng) -> tuple[Inputs, np.ndarray]:
+def _step(
+    family: Family, inputs: Inputs, angle: Reals, rng: np.random.Generator
+) -> tuple[Inputs, Reals]:
     """A random neighbour of each point, at a random scale, and the neighbours' eye angles."""
     count = len(angle)
 
-    def perturb(values, low, high):
+    def perturb(values: Ints, low: int, high: int) -> Ints:
         scale = 2.0 ** rng.uniform(0, np.log2(high - low), values.shape)
         step = np.rint(rng.normal(size=values.shape) * scale).astype(np.int64)
         return np.clip(np.where(rng.random(values.shape) < 0.4, values + step, values), low, high)
@@ -189,7 +196,14 @@ def _step(family: Family, inputs: Inputs, angle, rng) -> tuple[Inputs, np.ndarra
     ), angle  # fmt: skip
 
 
-def _climb(family, inputs, angle, rounds, rng, progress) -> Inputs:
+def _climb(
+    family: Family,
+    inputs: Inputs,
+    angle: Reals,
+    rounds: int,
+    rng: np.random.Generator,
+    progress: Callable[[float], None],
+) -> Inputs:
     """Hill climbing: each point moves to a neighbour with a larger error, `rounds` times.
 
     Every 50 rounds copies of the better half replace the worse half. Returns the points, sorted by
@@ -233,7 +247,9 @@ def _explore(family: Family, examples: int) -> list[dict]:
         st.integers(C.exponent.one, family.limit * C.exponent.one),
         st.integers(0, ONE - AMBIENT), st.tuples(coefficient, coefficient),
     )  # fmt: skip
-    def drive(normal, angle, exponent, diffuse, weight):
+    def drive(
+        normal: tuple[int, ...], angle: float, exponent: int, diffuse: int, weight: tuple[int, ...]
+    ) -> None:
         point = {
             "normal": normal, "angle": angle, "exponent": exponent, "diffuse": diffuse,
             "weight": weight if family.steep else weight[:1] * 2,
@@ -250,7 +266,7 @@ def _gathered(points: list[dict]) -> tuple[Inputs, np.ndarray]:
     """The `points` of `_explore` as arrays, and their eye angles (radians)."""
     angle = np.array([p["angle"] for p in points])
 
-    def column(name):
+    def column(name: str) -> Ints:
         return np.array([p[name] for p in points], np.int64).T
 
     return Inputs(
@@ -280,7 +296,7 @@ def search(
                 getattr(inputs, name)[..., :count] = getattr(explored[0], name)[..., :count]
             angle[:count] = explored[1][:count]
 
-        def done(part, climb=climb):
+        def done(part: float, climb: int = climb) -> None:
             if progress:
                 progress((climb + part) / climbs)
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from phong75.model.analysis import reference
+from phong75.model.arrays import ArrayLike, Flags, Ints, Reals, Spans
 from phong75.model.config import DEFAULT as C
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
 from phong75.model.front import visibility
@@ -62,7 +63,7 @@ class Case:
 # -- directed frames -------------------------------------------------------------------------------
 
 
-def _materials(*rows) -> MaterialTable:
+def _materials(*rows: tuple[ArrayLike, float, ArrayLike, float]) -> MaterialTable:
     """The material table of `rows` (Cp, d, W, n)."""
     table = MaterialTable.empty(C)
     for index, (cp, d, weight, n) in enumerate(rows):
@@ -81,7 +82,7 @@ def _half_vector(angle: float) -> tuple[int, int]:
     return half_vector_codes(np.array([np.sin(angle), 0, np.cos(angle)]), C)
 
 
-def _span(start, step, length, material=0) -> np.ndarray:
+def _span(start: ArrayLike, step: ArrayLike, length: ArrayLike, material: ArrayLike = 0) -> Spans:
     """SPAN_DTYPE[n]. start, step: codes, int[n, 3] or [3]. length, material: int[n] or int."""
     start = np.asarray(start, np.int64)
     spans = np.zeros(np.broadcast_shapes(start.shape[:-1], np.shape(length), np.shape(step)[:-1],
@@ -91,14 +92,20 @@ def _span(start, step, length, material=0) -> np.ndarray:
     return spans
 
 
-def _between(first, last, length, material=0) -> np.ndarray:
+def _between(first: Reals, last: Reals, length: ArrayLike, material: ArrayLike = 0) -> Spans:
     """Spans from normals `first` to `last`, float64[n, 3], components within `Config.normal`."""
     length = np.broadcast_to(length, (len(first),))
     step = (last - first) / np.maximum(length - 1, 1)[:, None]
     return _span(*encode(first, step, length, C), length, material)
 
 
-def _frame(spans, table=None, angle=ANGLE, two_sided=False, half_vector=None) -> Frame:
+def _frame(
+    spans: Spans,
+    table: MaterialTable | None = None,
+    angle: float = ANGLE,
+    two_sided: bool = False,
+    half_vector: tuple[int, int] | None = None,
+) -> Frame:
     """A frame of `spans`; x, y and last are set so that no two spans overlap.
 
     angle: from light to eye, radians. half_vector: codes, override `angle`.
@@ -114,7 +121,7 @@ def _frame(spans, table=None, angle=ANGLE, two_sided=False, half_vector=None) ->
     )  # fmt: skip
 
 
-def _directions(rng, count: int) -> np.ndarray:
+def _directions(rng: np.random.Generator, count: int) -> Reals:
     """Unit vectors float64[count, 3], uniform on the sphere."""
     return normalize(rng.normal(size=(count, 3)))
 
@@ -264,11 +271,12 @@ def _spans() -> Iterator[Case]:
         _frame(np.tile(np.concatenate([up, long, down]), 4), two_sided=True),
         dark_stays_ambient,
     )
+    single = _directions(rng, 4096)
     yield Case(
         "4096 spans back to back",
         "spans of one pixel, each of another material, without an idle cycle between",
         "one pixel per cycle",
-        _frame(_between(*[_directions(rng, 4096)] * 2, 1, np.arange(4096) % 14)),
+        _frame(_between(single, single, 1, np.arange(4096) % 14)),
         full_rate=True,
     )
 
@@ -370,7 +378,7 @@ def _coefficients() -> Iterator[Case]:
     first[:8] = [np.sin(ANGLE / 2), 0, np.cos(ANGLE / 2)]
     last[4:8] = first[4:8]
 
-    def crossing(materials):
+    def crossing(materials: int) -> Spans:
         return _between(first, last, 65, np.arange(64) % materials)
 
     axes = [((1, 0, 0), 0, 0, 1), ((0, 1, 0), 0.5, 0, 1), ((0, 0, 1), 1, 0, 1)]
@@ -410,7 +418,9 @@ def _coefficients() -> Iterator[Case]:
 # -- triangles, through the front end --------------------------------------------------------------
 
 
-def _picture(corners, normals, width: int, height: int, angle: float = ANGLE) -> Frame:
+def _picture(
+    corners: ArrayLike, normals: ArrayLike, width: int, height: int, angle: float = ANGLE
+) -> Frame:
     """The frame that the front end makes of triangles on the screen.
 
     corners: float64[T, 3, 2], pixels, y downward. normals: float64[T, 3, 3], light frame. angle:
@@ -440,7 +450,7 @@ def _once(frame: Frame, got: Pixels) -> list[str]:
     return [f"{doubles} pixels drawn twice"] if doubles else []
 
 
-def _fills(x0: float, y0: float, x1: float, y1: float):
+def _fills(x0: float, y0: float, x1: float, y1: float) -> Callable[[Frame, Pixels], list[str]]:
     """A check that the pixels with their centre in the rectangle are drawn once, and no other."""
 
     def check(frame: Frame, got: Pixels) -> list[str]:
@@ -455,7 +465,7 @@ def _fills(x0: float, y0: float, x1: float, y1: float):
     return check
 
 
-def _grid(x0, y0, columns, rows, wide, high) -> np.ndarray:
+def _grid(x0: float, y0: float, columns: int, rows: int, wide: float, high: float) -> Reals:
     """Corners float64[2 * columns * rows, 3, 2] of a grid of cells, two triangles per cell.
 
     x0, y0: upper left corner; wide, high: size of a cell; pixels.
@@ -468,7 +478,7 @@ def _grid(x0, y0, columns, rows, wide, high) -> np.ndarray:
     return np.concatenate([np.stack([a, c, d], 1), np.stack([a, d, b], 1)])
 
 
-def _upward(rng, shape) -> np.ndarray:
+def _upward(rng: np.random.Generator, shape: tuple[int, ...]) -> Reals:
     """Random normals with z >= 0, float64[shape]."""
     normals = rng.normal(size=shape)
     normals[..., 2] = np.abs(normals[..., 2])
@@ -479,7 +489,7 @@ def _triangles() -> Iterator[Case]:
     rng = np.random.default_rng(5)
     every = "every pixel once, none missing; accurate from the integers at the ports"
 
-    def tiled(corners, width, height):
+    def tiled(corners: Reals, width: int, height: int) -> Frame:
         return _picture(corners, _upward(rng, (len(corners), 3, 3)), width, height)
 
     yield Case(
@@ -528,7 +538,7 @@ def _triangles() -> Iterator[Case]:
     )  # fmt: skip
 
 
-def _t_junctions(rng) -> Case:
+def _t_junctions(rng: np.random.Generator) -> Case:
     """A slanted edge from (15.3, 2) to (17.6, 62): one pair of triangles to the left, 13 pairs to
     the right."""
     top, bottom = np.array([15.3, 2.0]), np.array([17.6, 62.0])
@@ -575,7 +585,7 @@ def frames() -> list[Frame]:
 MESH_PIXELS = 12
 
 
-def random_meshes(count: int, rng):
+def random_meshes(count: int, rng: np.random.Generator) -> tuple[Ints, Ints, Ints, Ints]:
     """`count` random triangulations of random rectangles, 24 triangles each.
 
     Returns (x, y, low, high). x, y: int64[count, 24, 3], vertices in 1/GRID pixel. low, high:
@@ -587,7 +597,7 @@ def random_meshes(count: int, rng):
     """
     grain = rng.choice([1, GRID // 8, GRID // 2], (count, 1))
 
-    def between(low, high):
+    def between(low: Ints, high: Ints) -> Ints:
         fraction = rng.random(np.broadcast_shapes(low.shape, high.shape))
         return low + (np.floor(fraction * ((high - low) // grain + 1)) * grain).astype(np.int64)
 
@@ -605,7 +615,7 @@ def random_meshes(count: int, rng):
     bx, by = outline_x, outline_y
     cx, cy = np.roll(bx, -1, axis=1), np.roll(by, -1, axis=1)
 
-    def inside(px, py):
+    def inside(px: Ints, py: Ints) -> Flags:
         sides = [
             (qx - rx) * (py - ry) - (qy - ry) * (px - rx)
             for qx, qy, rx, ry in ((bx, by, ax, ay), (cx, cy, bx, by), (ax, ay, cx, cy))
@@ -625,7 +635,9 @@ def random_meshes(count: int, rng):
     return np.concatenate(x, axis=1), np.concatenate(y, axis=1), low, high
 
 
-def shared_edges(meshes: int, seed: int = 75, progress: Callable[[float], None] | None = None):
+def shared_edges(
+    meshes: int, seed: int = 75, progress: Callable[[float], None] | None = None
+) -> dict[str, int]:
     """Count the pixels of `meshes` random triangulations that are covered wrongly.
 
     Returns a dict of counts. "meshes", "triangles", "pixels": what was tested. "gaps": pixels of a
@@ -638,10 +650,10 @@ def shared_edges(meshes: int, seed: int = 75, progress: Callable[[float], None] 
         count = min(5000, meshes - counts["meshes"])
         x, y, low, high = random_meshes(count, rng)
         y = y + np.arange(count)[:, None, None] * MESH_PIXELS * GRID
-        x, y = x.reshape(-1, 3) / GRID, y.reshape(-1, 3) / GRID
-        normal = np.zeros((len(x), 3, 3))
+        px, py = x.reshape(-1, 3) / GRID, y.reshape(-1, 3) / GRID
+        normal = np.zeros((len(px), 3, 3))
         triangles = visibility.set_up(
-            x, y, np.zeros(x.shape), normal, np.zeros(len(x), np.int64), two_sided=True
+            px, py, np.zeros(px.shape), normal, np.zeros(len(px), np.int64), two_sided=True
         )
         lines = count * MESH_PIXELS
         first, end = visibility.line_range(triangles, MESH_PIXELS, lines)
@@ -668,7 +680,7 @@ def shared_edges(meshes: int, seed: int = 75, progress: Callable[[float], None] 
 # -- error against the reference -------------------------------------------------------------------
 
 
-def errors(frame: Frame, rgb, progress: Callable[[float], None] | None = None) -> np.ndarray:
+def errors(frame: Frame, rgb: Ints, progress: Callable[[float], None] | None = None) -> Reals:
     """The largest error of the three channels of each pixel, LSB, float64[n].
 
     rgb: codes int[n, 3] of the pixels of `frame`, in the order of the stream. They are compared

@@ -11,6 +11,7 @@ from __future__ import annotations
 import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from phong75.model.config import DEFAULT, Config, Format
 
@@ -36,7 +37,7 @@ class Point:
     label: str
 
 
-def of_width(bits: int, name: str = "", **changes) -> Config:
+def of_width(bits: int, name: str = "", **changes: Any) -> Config:
     """The configuration with words of `bits` bits, 10 to 18; 18 gives the default formats.
 
     Every word loses 18 - bits fraction bits. Tables of lines lose one index bit per two bits of
@@ -137,7 +138,7 @@ def _interpolator(fraction: int) -> Config:
     )  # fmt: skip
 
 
-def _variant(name: str, **changes) -> Config:
+def _variant(name: str, **changes: Any) -> Config:
     """The default configuration with another name and `changes`."""
     return dataclasses.replace(DEFAULT, name=name, **changes)
 

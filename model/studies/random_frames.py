@@ -11,7 +11,7 @@ from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable
 
 
 def random_frame(
-    seed, spans: int, longest: int, two_sided: bool = False, config: Config = C
+    seed: int | list[int], spans: int, longest: int, two_sided: bool = False, config: Config = C
 ) -> Frame:
     """A frame of `spans` legal spans of 1 to `longest` pixels each, of random materials.
 

@@ -15,9 +15,12 @@ These are the arguments of Phong (1975) against Gouraud's shading.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 
 from phong75.model.analysis import reference
+from phong75.model.arrays import ArrayLike, Ints, Reals
 from phong75.model.config import TECHNIQUES
 from phong75.model.frame import ExactFrame, Frame
 from phong75.model.front.camera import Camera
@@ -28,11 +31,12 @@ from phong75.model.front.scene_to_spans import FrontEnd
 from phong75.model.scene_to_frame import front_end
 from phong75.model.studies import tessellation
 from phong75.model.studies.surfaces import SURFACES
+from phong75.model.twin import Pixels
 
 # -- Mach bands ------------------------------------------------------------------------------------
 
 
-def _along(frame: Frame, exact: ExactFrame, span, k, technique: str) -> np.ndarray:
+def _along(frame: Frame, exact: ExactFrame, span: Ints, k: ArrayLike, technique: str) -> Reals:
     """255 S along spans, float64[n, 3], before any rounding.
 
     span: int[n], numbers of the spans. k: real[n], position in pixels from the centre of the span's
@@ -80,7 +84,9 @@ def mach_bands(front: FrontEnd, technique: str, counted: np.ndarray) -> dict:
     }
 
 
-def profile(name: str, level: int, technique: str, size=tessellation.SIZE):
+def profile(
+    name: str, level: int, technique: str, size: tuple[int, int] = tessellation.SIZE
+) -> tuple[Ints, Reals]:
     """The middle scan line of a picture: x (int[n]) and 255 S of green (float64[n]).
 
     name: a surface of `SURFACES`. level: number of steps of the mesh. technique: a key of
@@ -101,7 +107,9 @@ def profile(name: str, level: int, technique: str, size=tessellation.SIZE):
 # -- flicker ---------------------------------------------------------------------------------------
 
 
-def turning(name: str, level: int, technique: str, frames: int = 30, size=(320, 240)):
+def turning(
+    name: str, level: int, technique: str, frames: int = 30, size: tuple[int, int] = (320, 240)
+) -> Iterator[Frame]:
     """Yield `frames` frames of a mesh that rotates about the z axis by 1 degree per frame."""
     surface = SURFACES[name]
     mesh = surface.mesh(level)
@@ -155,7 +163,7 @@ SHADES = np.array([1.0, 0.0, 1.0, 1.0])
 HALVES = ((0, 1, 2), (0, 2, 3))
 
 
-def _rotated(points, degrees: float) -> np.ndarray:
+def _rotated(points: Reals, degrees: float) -> Reals:
     """`points` (float64[..., 2]) rotated by `degrees`; multiples of 90 degrees are exact."""
     quarters, remainder = divmod(degrees, 90.0)
     c, s = np.cos(np.radians(remainder)), np.sin(np.radians(remainder))
@@ -165,7 +173,7 @@ def _rotated(points, degrees: float) -> np.ndarray:
     return points
 
 
-def polygon_shade(corners, shades, point) -> float:
+def polygon_shade(corners: Reals, shades: Reals, point: Sequence[float] | Reals) -> float:
     """Gouraud's interpolation over a convex polygon at `point` (x, y).
 
     corners: float64[N, 2]. shades: float64[N]. The shade is interpolated along the two edges that
@@ -235,7 +243,7 @@ def square_scene(degrees: float, size: int = 200) -> Scene:
     )  # fmt: skip
 
 
-def quarter_turn_difference(upright, turned, size: int = 200) -> int:
+def quarter_turn_difference(upright: Pixels, turned: Pixels, size: int = 200) -> int:
     """Largest difference, LSB, of the square's codes at 0 degrees and at 90 degrees.
 
     upright, turned: `Pixels` of the two pictures. The second is rotated back. Only pixels that both

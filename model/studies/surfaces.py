@@ -13,24 +13,27 @@ from typing import Protocol
 
 import numpy as np
 
+from phong75.model.arrays import Flags, Reals
 from phong75.model.front import shapes
 from phong75.model.front.mesh import Mesh, normalize
 from phong75.model.front.shapes import bernstein, bernstein_slope
 
 
 class Surface(Protocol):
-    """A smooth surface with meshes of several resolutions.
+    """A smooth surface with meshes of several resolutions."""
 
-    levels: numbers of steps of the meshes: around the axis, for the patch from border to border.
-    """
+    @property
+    def name(self) -> str:
+        """The key of the surface in SURFACES."""
 
-    name: str
-    levels: tuple[int, ...]
+    @property
+    def levels(self) -> tuple[int, ...]:
+        """Numbers of steps of the meshes: around the axis, for the patch from border to border."""
 
     def mesh(self, level: int) -> Mesh:
         """The mesh with `level` steps; its corners and normals are those of the surface."""
 
-    def see(self, origin: np.ndarray, back: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def see(self, origin: Reals, back: Reals) -> tuple[Flags, Reals]:
         """The first intersection of parallel rays with the surface.
 
         origin: float64[n, 3], a point of each ray. back: float64[3], unit vector towards the eye;
@@ -38,7 +41,7 @@ class Surface(Protocol):
         normals at the intersections.
         """
 
-    def turn(self, mesh: Mesh, tangent: np.ndarray) -> np.ndarray:
+    def turn(self, mesh: Mesh, tangent: Reals) -> Reals:
         """Change of the unit normal at the corners of `mesh` for small steps on the surface.
 
         tangent: float64[F, 3, 3], a step in the tangent plane at each corner. Returns the
@@ -57,14 +60,14 @@ class Sphere:
         """See `Surface`."""
         return shapes.sphere(1.0, level, level // 2)
 
-    def see(self, origin, back):
+    def see(self, origin: Reals, back: Reals) -> tuple[Flags, Reals]:
         """See `Surface`."""
         along = origin @ back
         foot = origin - along[:, None] * back
         square = 1.0 - np.sum(foot * foot, axis=1)
         return square >= 0, foot + np.sqrt(np.maximum(square, 0.0))[:, None] * back
 
-    def turn(self, mesh, tangent):
+    def turn(self, mesh: Mesh, tangent: Reals) -> Reals:
         """See `Surface`: the normal of the unit sphere is the point itself."""
         return tangent
 
@@ -86,7 +89,7 @@ class Torus:
         ring = points[..., :2] / np.linalg.norm(points[..., :2], axis=-1, keepdims=True)
         return normalize(points - np.concatenate([ring, np.zeros_like(ring[..., :1])], axis=-1))
 
-    def see(self, origin, back):
+    def see(self, origin: Reals, back: Reals) -> tuple[Flags, Reals]:
         """See `Surface`: the largest real root of (|P|^2 + 1 - r^2)^2 = 4 (x^2 + y^2)."""
         a, b = origin @ back, np.sum(origin * origin, axis=1) + 1.0 - self.tube**2
         xy, direction = origin[:, :2], back[:2]
@@ -110,7 +113,7 @@ class Torus:
             t = t - np.where(np.abs(slope) > 1e-6, value / np.where(slope == 0, 1, slope), 0.0)
         return hit, self.normal(origin + t[:, None] * back)
 
-    def turn(self, mesh, tangent):
+    def turn(self, mesh: Mesh, tangent: Reals) -> Reals:
         """See `Surface`: difference of normals off the surface, which `normal` defines as well."""
         points, step = mesh.vertices[mesh.faces], 1e-5
         return (self.normal(points + step * tangent) - self.normal(points - step * tangent)) / (
@@ -118,7 +121,7 @@ class Torus:
         )
 
 
-def _polynomial(coefficients, t, terms: int = 5):
+def _polynomial(coefficients: Reals, t: Reals, terms: int = 5) -> Reals:
     """The polynomial of the first `terms` of `coefficients` (float64[n, 5]) at t (float64[n])."""
     value = np.zeros_like(t)
     for k in range(terms):
@@ -143,7 +146,7 @@ class Patch:
         """See `Surface`."""
         return shapes.patch_mesh(self.control, level)
 
-    def at(self, u: np.ndarray, v: np.ndarray):
+    def at(self, u: Reals, v: Reals) -> list[Reals]:
         """Points, dS/du and dS/dv at the parameters `u`, `v` (float64[n]), float64[n, 3] each."""
         in_u, in_v = (bernstein(u), bernstein_slope(u)), (bernstein(v), bernstein_slope(v))
         return [
@@ -152,7 +155,7 @@ class Patch:
             for i, j in ((0, 0), (1, 0), (0, 1))
         ]
 
-    def see(self, origin, back):
+    def see(self, origin: Reals, back: Reals) -> tuple[Flags, Reals]:
         """See `Surface`: Newton's method from the nearest point of a grid on the patch.
 
         Valid only for views in which no ray meets the patch twice.
@@ -166,7 +169,7 @@ class Patch:
         hit[near], normal[near] = self._solve(target[near], screen)
         return hit, normal
 
-    def _solve(self, target, screen):
+    def _solve(self, target: Reals, screen: Reals) -> tuple[Flags, Reals]:
         """The points of the patch that are projected to `target`.
 
         target: float64[n, 2], screen coordinates. screen: float64[2, 3], axes of the screen.
@@ -192,7 +195,7 @@ class Patch:
         hit = converged & (np.minimum(u, v) >= 0) & (np.maximum(u, v) <= 1)
         return hit, normalize(np.cross(dv, du))
 
-    def turn(self, mesh, tangent):
+    def turn(self, mesh: Mesh, tangent: Reals) -> Reals:
         """See `Surface`: the step is converted to the parameters u and v of each corner."""
         steps = round(len(mesh.vertices) ** 0.5) - 1
         corner = mesh.faces.reshape(-1)
@@ -200,10 +203,12 @@ class Patch:
         _, du, dv = self.at(u, v)
         basis = np.stack([du, dv], axis=-1)
         step = np.einsum("nij,nj->ni", np.linalg.pinv(basis), tangent.reshape(-1, 3)) * 1e-5
-        ahead, behind = (
-            normalize(np.cross(*self.at(u + s * step[:, 0], v + s * step[:, 1])[:0:-1]))
-            for s in (1, -1)
-        )
+
+        def normal(u: Reals, v: Reals) -> Reals:
+            _, du, dv = self.at(u, v)
+            return normalize(np.cross(dv, du))
+
+        ahead, behind = (normal(u + s * step[:, 0], v + s * step[:, 1]) for s in (1, -1))
         return ((ahead - behind) / 2e-5).reshape(tangent.shape)
 
 

@@ -8,12 +8,15 @@ pixels that both cover are compared.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
 from phong75.model.analysis import reference
+from phong75.model.arrays import Reals
 from phong75.model.config import DEFAULT, TECHNIQUES
 from phong75.model.frame import Frame
 from phong75.model.front import scene_to_spans, visibility
@@ -23,7 +26,7 @@ from phong75.model.front.scene import Material, Scene, SceneObject
 from phong75.model.front.visibility import GRID
 from phong75.model.scene_to_frame import front_end
 from phong75.model.studies.surfaces import SURFACES, Surface
-from phong75.model.twin import render
+from phong75.model.twin import Pixels, render
 
 SIZE = (640, 480)
 #: The default material. No channel saturates, because a clamp would hide errors.
@@ -39,24 +42,36 @@ VIEWS = {
 METHODS = (*TECHNIQUES, "cubic")
 
 
-def scene_of(surface: Surface, mesh: Mesh, size=SIZE, material: Material = MATERIAL) -> Scene:
+def scene_of(
+    surface: Surface, mesh: Mesh, size: tuple[int, int] = SIZE, material: Material = MATERIAL
+) -> Scene:
     """The scene that shows `mesh`. The view depends on `surface`, not on the mesh.
 
     size: (width, height), pixels.
     """
     back, height = VIEWS[surface.name]
     axes = view_axes(back, (0.0, 0.0, 1.0))
+    assert axes is not None  # no view is along z
     middle = surface.mesh(4).vertices
     target = (middle.min(axis=0) + middle.max(axis=0)) / 2
     camera = Camera("orthographic", axes, target, target + 10 * axes[2], height)
     light = normalize(np.asarray(LIGHT) @ axes)
     objects = [SceneObject(surface.name, mesh, 0)]
     return Scene(
-        surface.name, *size, (0.0, 0.0, 0.0), camera, light, False, "linear", objects, [material]
+        surface.name,
+        size[0],
+        size[1],
+        (0.0, 0.0, 0.0),
+        camera,
+        light,
+        False,
+        "linear",
+        objects,
+        [material],
     )
 
 
-def shade(normal, scene: Scene, material: Material) -> np.ndarray:
+def shade(normal: Reals, scene: Scene, material: Material) -> Reals:
     """255 S by eq. (3) in float64: float64[n, 3].
 
     normal: float64[n, 3], any length, scene axes.
@@ -90,7 +105,7 @@ class Truth:
 
 
 @lru_cache(maxsize=8)
-def truth(name: str, size=SIZE, material: Material = MATERIAL) -> Truth:
+def truth(name: str, size: tuple[int, int] = SIZE, material: Material = MATERIAL) -> Truth:
     """The picture of the true surface `name` (a key of SURFACES)."""
     surface = SURFACES[name]
     scene = scene_of(surface, surface.mesh(4), size, material)
@@ -118,7 +133,13 @@ class Picture:
     value: np.ndarray
 
 
-def shaded(surface: Surface, level: int, technique: str, size=SIZE, material=MATERIAL):
+def shaded(
+    surface: Surface,
+    level: int,
+    technique: str,
+    size: tuple[int, int] = SIZE,
+    material: Material = MATERIAL,
+) -> tuple[Frame, Picture]:
     """Frame (for the hardware) and Picture (before any rounding) of the mesh with `level` steps."""
     scene = scene_of(surface, surface.mesh(level), size, material)
     config = TECHNIQUES[technique]
@@ -128,7 +149,9 @@ def shaded(surface: Surface, level: int, technique: str, size=SIZE, material=MAT
     return front.frame, Picture(pixels.y * size[0] + pixels.x, value)
 
 
-def cubic(surface: Surface, level: int, size=SIZE, material=MATERIAL) -> Picture:
+def cubic(
+    surface: Surface, level: int, size: tuple[int, int] = SIZE, material: Material = MATERIAL
+) -> Picture:
     """The mesh shaded by cubic interpolation of the intensity, which Phong (1975) mentions.
 
     Over each triangle the intensity is a cubic Bezier triangle. At the vertices it has the
@@ -170,7 +193,7 @@ def cubic(surface: Surface, level: int, size=SIZE, material=MATERIAL) -> Picture
     return Picture(np.concatenate(pixels), np.clip(np.concatenate(values), 0.0, 255.0))
 
 
-def _bezier(corner, value, point):
+def _bezier(corner: Reals, value: Reals, point: Reals) -> Reals:
     """Evaluate cubic Bezier triangles: float64[n, 3].
 
     corner: float64[n, 3, 2], vertices on the screen. value: float64[n, 3, 9], at each vertex three
@@ -178,7 +201,7 @@ def _bezier(corner, value, point):
     """
     a, b, c = (corner[:, k] for k in range(3))
 
-    def area(p, q, r):
+    def area(p: Reals, q: Reals, r: Reals) -> Reals:
         return (q[:, 0] - p[:, 0]) * (r[:, 1] - p[:, 1]) - (r[:, 0] - p[:, 0]) * (q[:, 1] - p[:, 1])
 
     whole = area(a, b, c)
@@ -197,7 +220,13 @@ def _bezier(corner, value, point):
     return total + 6 * np.prod(weight, axis=0)[:, None] * centre
 
 
-def errors(picture: Picture, name: str, size=SIZE, material=MATERIAL, where: str = "all") -> dict:
+def errors(
+    picture: Picture,
+    name: str,
+    size: tuple[int, int] = SIZE,
+    material: Material = MATERIAL,
+    where: str = "all",
+) -> dict[str, Any]:
     """Error of `picture` against the true surface `name`, in LSB, on the pixels that both cover.
 
     where: which pixels count: "all"; "facing", normals within 60 degrees of the eye; "highlight",
@@ -227,7 +256,7 @@ def distance(a: Picture, b: Picture) -> float:
     return float(np.sqrt(np.mean((a.value[first] - b.value[second]) ** 2)))
 
 
-def order(levels, values, last: int = 4) -> float:
+def order(levels: Sequence[float], values: Sequence[float], last: int = 4) -> float:
     """Order of convergence: minus the slope of log `values` over log `levels`.
 
     The slope is a least squares fit over the `last` points.
@@ -236,6 +265,6 @@ def order(levels, values, last: int = 4) -> float:
     return float(-slope)
 
 
-def as_picture(frame: Frame, pixels) -> Picture:
+def as_picture(frame: Frame, pixels: Pixels) -> Picture:
     """The Picture of the pipeline's output `pixels` (`Pixels`)."""
     return Picture(pixels.y * frame.width + pixels.x, pixels.rgb.astype(np.float64))

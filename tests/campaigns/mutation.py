@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Mutation testing of rtl/: `python -m tests.campaigns.mutation`, with --help for the options.
+"""Mutation testing of rtl/: `make mutate`, or `python -m tests.campaigns.mutation --help`.
 
 A mutant is a copy of the design with one change. There are two kinds of mutants:
 
@@ -19,7 +19,6 @@ Exit code: 0; 1 if a mutant survived; 2 if the command line is wrong.
 
 from __future__ import annotations
 
-import argparse
 import datetime
 import json
 import logging
@@ -35,10 +34,16 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Annotated
+
+import typer
 
 from phong75.model.config import DEFAULT
-from phong75.scripts import recorded
+from phong75.model.frame import InputError
+from phong75.scripts import console, options, recorded
+from phong75.scripts.configurations import unknown
 from phong75.scripts.lint import CONFIGS
+from phong75.scripts.main import single
 from phong75.sim import build, design
 from phong75.sim.build import Bench, BuildError
 from phong75.sim.frame.run_frame import SimulationError
@@ -348,9 +353,10 @@ def _outcomes() -> dict[str, str]:
     return json.loads(OUTCOMES.read_text()) if OUTCOMES.is_file() else {}
 
 
-def _record(everything: list[Mutant], known: dict[str, str]) -> None:
+def _record(everything: list[Mutant], survivors: list[Mutant], part: str) -> None:
     """Put what was found into the record, file by file, where all mutants of a file have been
-    tried; the other files' results stay."""
+    tried; the other files' results stay. A run with `survivors`, or a `part` of one, is refused."""
+    known = explained()
     found = recorded.figures("mutate").get("files", {})
     found = {name: of for name, of in found.items() if name in {file.name for file in _files()}}
     outcomes = _outcomes()
@@ -365,18 +371,10 @@ def _record(everything: list[Mutant], known: dict[str, str]) -> None:
             "survived": ours.count(""), "equivalent": len(all_of) - len(ours),
             "date": datetime.date.today().isoformat(), "commit": recorded.commit(),
         }  # fmt: skip
-    recorded.save("mutate", "make mutate", ("verilator", "cocotb"), {"files": found})
-
-
-def _arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="mutate", description=__doc__.split("\n\n")[1])
-    parser.add_argument("--files", nargs="+", metavar="MODULE", help="these files of rtl/ only")
-    parser.add_argument("--kind", choices=KINDS, help="mutants of this kind only")
-    parser.add_argument("--sample", type=int, metavar="N", help="N mutants at random")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="mutants at a time")
-    parser.add_argument("--again", action="store_true", help="not those killed before")
-    parser.add_argument("--list", action="store_true", help="show the mutants, run nothing")
-    return parser.parse_args()
+    recorded.record(
+        "mutate", "make mutate", ("verilator", "cocotb"), {"files": found},
+        failed=bool(survivors), part=part,
+    )  # fmt: skip
 
 
 def _pool(jobs: int):
@@ -414,48 +412,76 @@ def _campaign(chosen: list[Mutant], jobs: int) -> list[Mutant]:
     return survivors
 
 
-def main() -> int:
-    """Run the campaign; returns the exit code."""
-    arguments = _arguments()
+def _chosen(files: list[str], kind: str | None) -> tuple[list[Mutant], list[Mutant]]:
+    """All mutants of `files` (names of modules; all if empty) and of `kind` (both if None); and
+    of these the ones that are not explained. Raises InputError."""
+    if kind not in (None, *KINDS):
+        raise InputError(f"--kind is `{kind}`, not one of {', '.join(KINDS)}")
+    by_name = {path.stem: path for path in sorted(_files(), key=lambda file: file.name)}
+    for name in files:
+        if name not in by_name:
+            raise unknown("MODULE", name, by_name)
     known = explained()
-    files = sorted(_files(), key=lambda file: file.name)
-    if arguments.files:
-        by_name = {path.stem: path for path in files}
-        if missing := [name for name in arguments.files if name not in by_name]:
-            print(f"mutate: not in rtl/: {' '.join(missing)}", file=sys.stderr)
-            return 2
-        files = [by_name[name] for name in arguments.files]
-    kinds = (arguments.kind,) if arguments.kind else KINDS
-    everything = [m for path in files for m in mutants(path, kinds)]
-    if not (arguments.files or arguments.kind):
+    everything = [
+        mutant
+        for name in files or by_name
+        for mutant in mutants(by_name[name], (kind,) if kind else KINDS)
+    ]
+    if not (files or kind):
         for key in sorted(set(known) - {m.key for m in everything}):
-            print(f"explained, but no mutant: {key}")
-    chosen = [m for m in everything if m.key not in known]
-    if arguments.again:
+            console.note(f"explained, but no mutant: {key}")
+    return everything, [m for m in everything if m.key not in known]
+
+
+def main(
+    modules: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="MODULE", help="Files of rtl/, without .v; else all."),
+    ] = None,
+    kind: Annotated[
+        str | None,
+        typer.Option("--kind", metavar="KIND", help="Mutants of this kind: constant or operator."),
+    ] = None,
+    sample: Annotated[
+        int | None,
+        typer.Option("--sample", metavar="N", help="So many mutants at random.", min=0),
+    ] = None,
+    jobs: Annotated[
+        int, typer.Option("--jobs", metavar="N", help="Mutants at a time.", min=1)
+    ] = os.cpu_count() or 1,
+    again: Annotated[
+        bool, typer.Option("--again", help="Not those that were killed and did not change.")
+    ] = False,
+    show: Annotated[bool, typer.Option("--list", help="Show the mutants, run nothing.")] = False,
+    record: options.Record = False,
+) -> int:
+    """Change each constant and operator of rtl/ and run the tests; every change must fail one."""
+    recorded.check(record)
+    everything, chosen = _chosen(modules or [], kind)
+    if again:
         tried = _outcomes()
         chosen = [m for m in chosen if not tried.get(m.name)]
-    if arguments.sample and arguments.sample < len(chosen):
-        chosen = random.Random(SEED).sample(chosen, arguments.sample)
-    if arguments.list:
+    if sample is not None:
+        chosen = random.Random(SEED).sample(chosen, min(sample, len(chosen)))
+    if show:
         for m in chosen:
-            print(f"{m.file}:{m.line}: {m.old} -> {m.new}: {m.key.partition(': ')[2]}")
-        print(f"{len(chosen)} mutants, {len(everything) - len(chosen)} left out")
-        return 0
+            console.say(f"{m.file}:{m.line}: {m.old} -> {m.new}: {m.key.partition(': ')[2]}")
+        console.say(f"{len(chosen)} mutants, {len(everything) - len(chosen)} left out")
+        return console.GOOD
 
     os.environ["COCOTB_MAX_FAILURES"] = "1"
     try:
-        survivors = _campaign(chosen, arguments.jobs)
+        survivors = _campaign(chosen, jobs)
     except RejectedDesignError as error:
-        print(f"mutate: {error}", file=sys.stderr)
-        return 2
-    if not arguments.sample:
-        _record(everything, known)
-    print(
+        raise InputError(str(error)) from None
+    if record:
+        _record(everything, survivors, "only a sample was tried" if sample is not None else "")
+    console.say(
         f"{len(chosen)} mutants, {len(chosen) - len(survivors)} killed, "
         f"{len(survivors)} survived; {len(everything) - len(chosen)} left out or explained"
     )
-    return 1 if survivors else 0
+    return console.FAILED if survivors else console.GOOD
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(single(main, sys.argv[1:], "mutate"))

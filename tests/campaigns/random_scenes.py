@@ -11,12 +11,15 @@ import multiprocessing
 import os
 import shutil
 import sys
+from typing import Annotated
 
+import typer
 from rich.console import Console
 from rich.progress import track
 
-from phong75.scripts import recorded
-from phong75.sim.build import BuildError, runtime
+from phong75.scripts import console, options, recorded
+from phong75.scripts.main import single
+from phong75.sim.build import BuildError, runtime, runtime_built
 from phong75.sim.frame.run_frame import SimulationError
 from tests.configuration_tests import SEED, random_configuration_test
 
@@ -37,31 +40,42 @@ def attempt(seed: int) -> tuple[str, int, tuple]:
     return said, int(frame.spans["length"].sum()), tuple(map(str, left))
 
 
-def main(argv: list[str]) -> int:
-    """Run as many scenes as `argv` says; returns the exit code."""
-    wanted = argv[0] if argv else "200"
-    if not (wanted.isascii() and wanted.isdigit() and 1 <= int(wanted) <= MOST):
-        print(f"Error: SCENES is `{wanted}`, not a number from 1 to {MOST}", file=sys.stderr)
-        return 2
+def main(
+    scenes: Annotated[
+        int,
+        typer.Option(
+            "--scenes",
+            metavar="N",
+            help="How many random scenes.",
+            parser=lambda text: options.parse_count("--scenes", text, 0, MOST),
+        ),
+    ] = 200,
+    record: options.Record = False,
+) -> int:
+    """Run random scenes, each on the build that is pruned to it (minutes)."""
+    recorded.check(record)
+    if scenes and not runtime_built():
+        console.phase("compiling Verilator's runtime (once)")
     runtime()  # once, before all need it
-    seeds = range(SEED, SEED + int(wanted))
+    seeds = range(SEED, SEED + scenes)
     with multiprocessing.get_context("spawn").Pool(os.cpu_count()) as pool:
         tried = track(
             pool.imap(attempt, seeds), "random scenes", len(seeds), console=Console(stderr=True)
         )
         found = list(tried)
-    wrong = [f"seed {seed}: {said}" for seed, (said, *_) in zip(seeds, found, strict=True) if said]
+    wrong = [f"seed {s}: {text}" for s, (text, *_) in zip(seeds, found, strict=True) if text]
     for line in wrong:
-        print(line, file=sys.stderr)
+        console.failure(line)
     pixels, builds = sum(p for _, p, _ in found), len({build for *_, build in found})
-    print(f"{len(found)} scenes, {builds} builds, {pixels} pixels, {len(wrong)} complaints")
-    recorded.save(
-        "prune-random", "make prune-random", ("verilator", "numpy"),
-        {"scenes": len(found), "builds": builds, "pixels": pixels, "complaints": len(wrong)},
-        effort={"scenes": len(found)},
-    )  # fmt: skip
-    return 1 if wrong else 0
+    console.say(f"{len(found)} scenes, {builds} builds, {pixels} pixels, {len(wrong)} complaints")
+    if record:
+        recorded.record(
+            "prune-random", "make prune-random", ("verilator", "numpy"),
+            {"scenes": len(found), "builds": builds, "pixels": pixels, "complaints": len(wrong)},
+            {"scenes": scenes}, failed=bool(wrong),
+        )  # fmt: skip
+    return console.FAILED if wrong else console.GOOD
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(single(main, sys.argv[1:], "prune-random"))
