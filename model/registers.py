@@ -1,7 +1,13 @@
+# SPDX-License-Identifier: MIT
 """The write port of the pipeline: its address map, and the writes that set up a frame.
 
-An address is {kind, material, index}: kind 0 is interval `index` of W(i) of a material, kind 1 is
-one of `FIELDS` of a material (the registers are fields of any material).
+An address is {kind, material, index}: 1 bit, `material_bits` and `weight_index_bits`.
+
+- Kind 0: interval `index` of the table W(i) of a material. The word is {step, left}: the point at
+  the left of the interval in `coefficient` (u1.16) and the step to the next point, signed.
+- Kind 1: `index` is one of `FIELDS` of a material. The word is a code, from bit 0 up. The fields
+  half_x, half_z and control are registers; any material addresses them. Bit 0 of control is 1 for a
+  two-sided frame.
 """
 
 from __future__ import annotations
@@ -11,25 +17,28 @@ import numpy as np
 from phong75.model.config import Config
 from phong75.model.frame import Frame
 
-#: Index of each field at addresses of kind 1. Ambient and diffuse take three: red, green, blue.
+#: Index of each field at addresses of kind 1. Ambient and diffuse take three each: red, green,
+#: blue.
 FIELDS = {"ambient": 0, "diffuse": 3, "exponent": 6, "half_x": 8, "half_z": 9, "control": 10}
 
 
 def address_bits(config: Config) -> int:
-    """Width of the write port's address."""
+    """Width of the write port's address, in bits."""
     return 1 + config.material_bits + config.weight_index_bits
 
 
 def word_bits(config: Config) -> int:
-    """Width of the write port's word: {step, left} of an interval of W(i)."""
+    """Width of the write port's word, in bits: {step, left} of an interval of W(i)."""
     return 2 * config.coefficient.bits + 1
 
 
 def writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
-    """(address, word) of every write that `frame` needs: registers and the materials in use.
+    """(address, word) of every write that `frame` needs on the build `config`: the registers, and
+    the materials that spans name.
 
-    What a build leaves out is written only where the frame does need it; the RTL answers such a
-    write with `unsupported`. Nothing is written where intensities come with the spans.
+    A value that the build leaves out, or holds as a constant, is written only if the frame needs
+    another one; the RTL answers such a write with `unsupported`. Spans of intensities need no
+    writes.
     """
     if config.technique != "phong":
         return []
@@ -38,7 +47,7 @@ def writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
     table = frame.materials
     out = []
 
-    def write(name, word, needed, base=0, channel=0):
+    def write(name: str, word: int, needed: bool, base: int = 0, channel: int = 0) -> None:
         if needed:
             out.append((kind | base | (FIELDS[name] + channel), int(word) & word_mask))
 

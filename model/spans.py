@@ -1,42 +1,47 @@
-"""The `spans` file: one frame as the hardware reads it, registers and material table included.
+# SPDX-License-Identifier: MIT
+"""The span file: one frame as the hardware reads it, registers and material table included.
 
     line 1   `phong75-spans 1`
     line 2   a JSON object on one line, padded with spaces so that the body starts at `body_offset`
-    body     `spans` records, one a span, in the order of the stream
+    body     `spans` records, one per span, in the order of the stream
 
 The JSON object has exactly these keys:
 
     width, height   the picture, in pixels
-    half_vector     [hx, hz], codes: the direction halfway between light and eye
+    half_vector     [hx, hz], codes of the half vector between light and eye
     two_sided       whether |Zn| is shaded
-    background      [red, green, blue], codes of the dots that no span covers
+    background      [red, green, blue], codes of the pixels that no span covers
     materials       a list of {index, ambient[3], diffuse[3], weight[P], exponent}, all in codes
     spans           the number of records
-    formats         the fields of `Config` that give the codes above their meaning
+    formats         the fields of `Config` that give these codes their meaning
     record          {bytes, fields}: the layout of a record; fields is {name: [lsb, bits]}
     body_offset     where the body starts, a multiple of the size of a record
 
-A record is one word of the pipeline's `s_axis_tdata` with `s_axis_tlast` above it, the most
-significant byte first, which is how Verilog's `$fread` fills a register. Its fields, from bit 0
-upwards, are start_x, start_y, start_z, step_x, step_y, step_z (`Config.normal`), x, y
-(`coordinate_bits`), length (one bit more), material (`material_bits`) and last (1 bit); zeros fill
-up to the next power of two of bytes. With the default configuration that is 234 bits in 32 bytes.
-For Gouraud shading x, y, z of start and step are red, green, blue (for grey there is x only); for
-flat shading there is no step.
+A record is one word of the pipeline's `s_axis_tdata` with `s_axis_tlast` above it. The most
+significant byte comes first, as Verilog's `$fread` fills a register. The fields, from bit 0 up,
+are start_x, start_y, start_z, step_x, step_y, step_z (`Config.normal`), x, y (`coordinate_bits`),
+length (one bit more), material (`material_bits`) and last (1 bit). Zeros fill the record up to a
+power of two of bytes: 234 bits in 32 bytes with the default configuration.
 
-Codes, not reals, stand in the file, so that a round trip is exact and a file that once showed an
-error shows it again.
+For Gouraud shading, x, y and z of start and step are red, green and blue; for grey there is x only.
+For flat shading there is no step. With `Config.spans_carry_squares`, six words of `squared` stand
+in place of x and y of start and step (see `phong75.model.quadratic_spans`).
+
+The file holds codes, not reals. A round trip is therefore exact, and a file that once showed an
+error shows the same error again.
 """
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from phong75.model import quadratic_spans
+from phong75.model.arrays import Flags, Spans
 from phong75.model.config import Config
 from phong75.model.frame import SPAN_DTYPE, Frame, InputError, MaterialTable
 
@@ -58,7 +63,10 @@ FORMATS = (
 #: The largest exponent n that the hardware is specified for.
 MAX_EXPONENT = 128
 
-_WORD = 64  # records are packed and unpacked through words of this many bits
+#: Records are packed and unpacked through words of this many bits.
+_WORD = 64
+
+Records = NDArray[np.uint64]
 
 
 class SpanField(NamedTuple):
@@ -69,17 +77,12 @@ class SpanField(NamedTuple):
     bits: int
 
 
-def squares_only(config: Config) -> bool:
-    """Whether spans carry squares of the normal in place of its x and y (model/differences.py)."""
-    return config.technique == "phong" and config.normal_method == "quadratic_spans"
-
-
 def span_fields(config: Config) -> list[SpanField]:
-    """The fields of a record, from bit 0 upwards, without gaps."""
+    """The fields of a record, from bit 0 up, without gaps."""
     carried = ("start",) if config.technique == "flat" else ("start", "step")
     axes = "xyz"[: config.values]
     widths = [(f"{what}_{axis}", config.normal.bits) for what in carried for axis in axes]
-    if squares_only(config):
+    if config.spans_carry_squares:
         widths = [(f"{what}_z", config.normal.bits) for what in carried]
         widths += [(name, config.squared.bits) for name in quadratic_spans.NAMES]
     widths += [
@@ -97,7 +100,7 @@ def span_fields(config: Config) -> list[SpanField]:
 
 
 def record_bits(config: Config) -> int:
-    """Bits of a record, padding included."""
+    """Width of a record in bits, padding included."""
     top = span_fields(config)[-1]
     bits = _WORD
     while bits < top.lsb + top.bits:
@@ -105,25 +108,25 @@ def record_bits(config: Config) -> int:
     return bits
 
 
-def illegal_spans(frame: Frame, config: Config) -> np.ndarray:
-    """Which spans the RTL flags, bool[n]: a normal leaves its format between first and last pixel.
-
-    The walk is a straight line, so its two ends decide.
+def illegal_spans(frame: Frame, config: Config) -> Flags:
+    """Which spans the RTL flags as illegal, bool[n]: a component of the normal leaves its format
+    between the first and the last pixel. The components are linear, so both ends decide.
     """
     steps = np.maximum(frame.spans["length"].astype(np.int64), 1) - 1
     end = frame.spans["start"] + steps[:, None] * frame.spans["step"]
-    return ~(config.normal.contains(frame.spans["start"]) & config.normal.contains(end)).all(axis=1)
+    legal = config.normal.contains(frame.spans["start"]) & config.normal.contains(end)
+    return np.any(~legal, axis=1)
 
 
 # -- writing ---------------------------------------------------------------------------------------
 
 
-def write_spans(path, frame: Frame, config: Config) -> None:
+def write_spans(path: str | Path, frame: Frame, config: Config) -> None:
     """Write `frame` to the file `path`; the same frame always gives the same bytes.
 
-    Spans that only the reader would reject (beyond the picture, illegal normals) are written, so
-    that a test can offer them to the RTL. Raises ValueError if a value does not fit its field and
-    OSError if the file cannot be written.
+    Spans beyond the picture and spans with illegal normals are written, so that a test can offer
+    them to the RTL. Raises ValueError if a value does not fit its field and OSError if the file
+    cannot be written.
     """
     body = pack(frame.spans, config, frame.half_vector)
     size = record_bits(config) // 8
@@ -139,24 +142,24 @@ def write_spans(path, frame: Frame, config: Config) -> None:
         "record": _record(config),
     }
     lines = _lines(header, 0)
-    # The offset is part of the line that decides it: give its digits room, then round up.
+    # The line holds the offset, which depends on the line's length: leave room for its digits.
     offset = -(-(len(lines) + 20) // size) * size
     lines = _lines(header, offset)
     Path(path).write_bytes(lines[:-1].ljust(offset - 1) + b"\n" + body)
 
 
-def pack(spans: np.ndarray, config: Config, half_vector=(0, 0)) -> bytes:
+def pack(spans: Spans, config: Config, half_vector: tuple[int, ...] = (0, 0)) -> bytes:
     """The records of `spans` (SPAN_DTYPE[n]), one after the other.
 
-    half_vector: that of the frame; it matters where spans carry squares. Raises ValueError if a
-    value does not fit its field.
+    half_vector: (hx, hz) of the frame, needed if spans carry squares. Raises ValueError if a value
+    does not fit its field.
     """
     words = np.zeros((len(spans), record_bits(config) // _WORD), np.uint64)
     if not np.array_equal(spans, _implied(spans, config)):
         raise ValueError("a span has a step or colours that a record has no place for")
-    squares = (
-        quadratic_spans.coefficients(spans, half_vector, config) if squares_only(config) else {}
-    )
+    squares = {}
+    if config.spans_carry_squares:
+        squares = quadratic_spans.coefficients(spans, half_vector, config)
     for field in span_fields(config):
         square = squares.get(field.name)
         value, signed = _column(spans, field.name) if square is None else (square, True)
@@ -171,14 +174,14 @@ def pack(spans: np.ndarray, config: Config, half_vector=(0, 0)) -> bytes:
     return words[:, ::-1].astype(">u8").tobytes()
 
 
-def unpack(body: bytes, config: Config) -> np.ndarray:
+def unpack(body: bytes, config: Config) -> Spans:
     """The spans (SPAN_DTYPE[n]) of the records in `body`.
 
-    Raises InputError if a record's padding is not zero, or if it carries squares, from which x and
-    y do not come back.
+    Raises InputError if the padding of a record is not zero, or if records carry squares, from
+    which the normal's x and y cannot be recovered.
     """
-    if squares_only(config):
-        raise InputError("spans of differences cannot be read back")
+    if config.spans_carry_squares:
+        raise InputError("spans of squares cannot be read back")
     words = np.frombuffer(body, ">u8").reshape(-1, record_bits(config) // _WORD)[:, ::-1]
     words = words.astype(np.uint64)
     fields = span_fields(config)
@@ -193,8 +196,9 @@ def unpack(body: bytes, config: Config) -> np.ndarray:
     return _implied(spans, config)
 
 
-def _implied(spans, config):
-    """`spans` with what a record leaves out: one channel is grey, flat shading has no steps."""
+def _implied(spans: Spans, config: Config) -> Spans:
+    """A copy of `spans` in which the values that a record leaves out are what they must be: equal
+    channels for grey, no step for flat shading."""
     spans = spans.copy()
     for what in ("start", "step"):
         spans[what][:, config.values :] = spans[what][:, :1]
@@ -203,8 +207,11 @@ def _implied(spans, config):
     return spans
 
 
-def _bits(words, lsb):
-    """The 64 bits from `lsb` upwards of every record, uint64[n] (zeros above the record)."""
+def _bits(words: Records, lsb: int) -> Records:
+    """The 64 bits from `lsb` up of every record, uint64[n]; zeros above the record.
+
+    words: uint64[n, words of a record], the least significant word first.
+    """
     word, shift = divmod(lsb, _WORD)
     if word >= words.shape[1]:
         return np.zeros(len(words), np.uint64)
@@ -214,29 +221,32 @@ def _bits(words, lsb):
     return value
 
 
-def _column(spans, name):
-    """The column of `spans` that a field holds (a view), and whether it is signed."""
+def _column(spans: Spans, name: str) -> tuple[Any, bool]:
+    """The column of `spans` that the field `name` holds (a view), and whether it is signed."""
     what, _, axis = name.partition("_")
     return (spans[what][:, "xyz".index(axis)], True) if axis else (spans[what], False)
 
 
-def _lines(header, offset):
+def _lines(header: dict[str, Any], offset: int) -> bytes:
+    """Lines 1 and 2 of the file, without padding."""
     text = json.dumps(header | {"body_offset": offset}, separators=(",", ":"))
     return f"{MAGIC}\n{text}\n".encode()
 
 
-def _formats(config):
+def _formats(config: Config) -> dict[str, Any]:
+    """The `formats` of line 2."""
     values = config.as_dict()
     return {name: values[name] for name in FORMATS}
 
 
-def _record(config):
+def _record(config: Config) -> dict[str, Any]:
+    """The `record` of line 2."""
     fields = {field.name: [field.lsb, field.bits] for field in span_fields(config)}
     return {"bytes": record_bits(config) // 8, "fields": fields}
 
 
-def _material_rows(frame, config):
-    """The entries of the table that a span names or that somebody has set."""
+def _material_rows(frame: Frame, config: Config) -> list[dict[str, Any]]:
+    """The `materials` of line 2: the rows that a span names or that differ from an empty row."""
     table, empty = frame.materials, MaterialTable.empty(config)
     columns = ("ambient", "diffuse", "weight", "exponent")
     named = set(frame.spans["material"].tolist())
@@ -251,12 +261,12 @@ def _material_rows(frame, config):
 # -- reading ---------------------------------------------------------------------------------------
 
 
-def read_spans(path, config: Config) -> Frame:
+def read_spans(path: str | Path, config: Config) -> Frame:
     """The frame in the file `path`, checked against `config`.
 
-    Spans may come in any order and may overlap; their normals may be illegal (see
-    `illegal_spans`). Raises InputError, with one line that names the file and what is wrong with
-    it, for everything else that the hardware could not be given.
+    Spans may come in any order and may overlap, and their normals may be illegal (see
+    `illegal_spans`). For anything else that the hardware cannot be given, this raises InputError
+    with one line that names the file and the fault.
     """
     try:
         data = Path(path).read_bytes()
@@ -269,8 +279,8 @@ def read_spans(path, config: Config) -> Frame:
         raise InputError(f"{path}: {error}") from None
 
 
-def _split(data):
-    """The header (a dict) and the bytes after its line."""
+def _split(data: bytes) -> tuple[dict[str, Any], bytes]:
+    """The JSON object of line 2, and the bytes after that line."""
     magic, _, rest = data.partition(b"\n")
     if magic != MAGIC.encode():
         kind = MAGIC.rpartition(" ")[0]
@@ -295,23 +305,26 @@ def _split(data):
     return header, data[offset:]
 
 
-def _frame(header, body, config):
-    for key, mine in _formats(config).items():
-        theirs = header["formats"].get(key) if isinstance(header["formats"], dict) else None
-        if theirs != mine:
-            raise InputError(f"formats.{key} is {theirs}, but the pipeline is built for {mine}")
+def _frame(header: dict[str, Any], body: bytes, config: Config) -> Frame:
+    """The frame of the JSON object `header` and the records `body`."""
+    formats = header["formats"] if isinstance(header["formats"], dict) else {}
+    for key, expected in _formats(config).items():
+        given = formats.get(key)
+        if given != expected:
+            raise InputError(f"formats.{key} is {given}, but the pipeline is built for {expected}")
     if header["record"] != _record(config):
         raise InputError("record: the layout is not that of the pipeline")
     width = _integer("width", header["width"], 1, config.max_size)
     height = _integer("height", header["height"], 1, config.max_size)
     fmt = config.half_vector
-    half = _integers("half_vector", header["half_vector"], 2, fmt.min, fmt.max)
-    if not any(half):
+    hx, hz = _integers("half_vector", header["half_vector"], 2, fmt.min, fmt.max)
+    if not (hx or hz):
         raise InputError("half_vector has length zero")
     if not isinstance(header["two_sided"], bool):
         raise InputError("two_sided is neither true nor false")
-    background = _integers("background", header["background"], 3, 0, (1 << config.colour_bits) - 1)
-    materials, given = _materials(header["materials"], config)
+    white = (1 << config.colour_bits) - 1
+    red, green, blue = _integers("background", header["background"], 3, 0, white)
+    materials, named = _materials(header["materials"], config)
 
     size = record_bits(config) // 8
     count = _integer("spans", header["spans"], 0, None)
@@ -326,16 +339,14 @@ def _frame(header, body, config):
         spans["x"].astype(np.int64) + spans["length"] > width,
     )
     _reject(f"y is beyond the height of {height}", spans["y"] >= height)
-    _reject("names a material that line 2 does not give", ~given[spans["material"]])
+    _reject("names a material that line 2 does not give", ~named[spans["material"]])
     _reject("is marked as the last, but more follow", spans["last"][:-1])
     _reject("is the last, but not marked so", ~spans["last"][-1:], len(spans) - 1)
-    return Frame(
-        width, height, tuple(half), header["two_sided"], tuple(background), materials, spans
-    )
+    return Frame(width, height, (hx, hz), header["two_sided"], (red, green, blue), materials, spans)
 
 
-def _materials(rows, config):
-    """The material table, and which of its entries the header gives (bool[M])."""
+def _materials(rows: Any, config: Config) -> tuple[MaterialTable, Flags]:
+    """The material table, and which of its rows the list `rows` gives (bool[M])."""
     if not isinstance(rows, list):
         raise InputError("materials is not a list")
     table, given = MaterialTable.empty(config), np.zeros(config.materials, bool)
@@ -360,7 +371,8 @@ def _materials(rows, config):
     return table, given
 
 
-def _keys(name, value, keys):
+def _keys(name: str, value: Any, keys: list[str]) -> None:
+    """Raise InputError if `value` is not an object with exactly these `keys`."""
     if not isinstance(value, dict):
         raise InputError(f"{name} is not a JSON object")
     for key in keys:
@@ -371,7 +383,8 @@ def _keys(name, value, keys):
             raise InputError(f"{name} has an unknown key `{key}`")
 
 
-def _integer(name, value, low, high):
+def _integer(name: str, value: Any, low: int, high: int | None) -> int:
+    """`value`, if it is an integer from `low` to `high`; else InputError is raised."""
     if type(value) is not int or value < low or (high is not None and value > high):
         limits = f"from {low} to {high}" if high is not None else f"of {low} or more"
         shown = json.dumps(value)
@@ -379,13 +392,15 @@ def _integer(name, value, low, high):
     return value
 
 
-def _integers(name, value, count, low, high):
+def _integers(name: str, value: Any, count: int, low: int, high: int) -> list[int]:
+    """`value`, if it is a list of `count` integers from `low` to `high`; else InputError is
+    raised."""
     if not isinstance(value, list) or len(value) != count:
         raise InputError(f"{name} is not a list of {count} whole numbers")
     return [_integer(f"{name}[{i}]", v, low, high) for i, v in enumerate(value)]
 
 
-def _reject(what, bad, first=0):
-    """Raise InputError if any of `bad` (bool[n]) is set; its entry 0 is span `first`."""
+def _reject(fault: str, bad: Flags, first: int = 0) -> None:
+    """Raise InputError that names the first span of `bad` (bool[n]); `bad[0]` is span `first`."""
     if bad.any():
-        raise InputError(f"span {first + int(np.argmax(bad))}: {what}")
+        raise InputError(f"span {first + int(np.argmax(bad))}: {fault}")

@@ -1,10 +1,11 @@
+# SPDX-License-Identifier: MIT
 """The lookup tables of the pipeline, generated from the configuration.
 
-The default's tables are sets of straight lines: entry k holds the `value` at the left end of
-segment k and the `slope`, the change over the whole segment, as unsigned codes. Each line is the
-chord of its segment moved halfway towards the curve, which halves the chord's largest error and is
-the best straight line for a curve without inflection (Chebyshev's equioscillation). Other methods
-have parabolas or constants. `tests/test_tables.py` recomputes every entry with mpmath.
+The tables of the default configuration hold straight lines: entry k holds the `value` at the left
+end of segment k and the `slope`, the change over the whole segment, as unsigned codes. Each line is
+the chord of its segment, moved halfway towards the curve. That halves the chord's largest error and
+is the best straight line for a curve without inflection (Chebyshev's equioscillation). Other
+methods have parabolas or constants. tests/test_tables.py recomputes every entry with mpmath.
 """
 
 from __future__ import annotations
@@ -14,22 +15,26 @@ from functools import lru_cache
 
 import numpy as np
 
+from phong75.model.arrays import Ints, Reals
 from phong75.model.config import Config
 
 
 @dataclass(frozen=True)
 class LineTable:
-    """Straight-line segments: `value` and `slope` codes, int64[segments], and their widths."""
+    """Straight lines value + t slope (or value - t slope), t from 0 to 1 over a segment.
+
+    value, slope: codes int64[segments], slopes as magnitudes; value_bits, slope_bits: their widths.
+    """
 
     name: str
-    value: np.ndarray
-    slope: np.ndarray
+    value: Ints
+    slope: Ints
     value_bits: int
     slope_bits: int
 
     @property
-    def words(self) -> np.ndarray:
-        """The ROM contents, {value, slope}, int64[segments]."""
+    def words(self) -> Ints:
+        """The ROM contents {value, slope}, int64[segments]."""
         return (self.value << self.slope_bits) | self.slope
 
     @property
@@ -40,20 +45,22 @@ class LineTable:
 
 @dataclass(frozen=True)
 class ParabolaTable:
-    """Parabolas value - t (slope - t curve), t from 0 to 1 over a segment: codes, int64[segments],
-    and their widths."""
+    """Parabolas value - t (slope - t curve), t from 0 to 1 over a segment.
+
+    value, slope, curve: codes int64[segments]; value_bits, slope_bits, curve_bits: their widths.
+    """
 
     name: str
-    value: np.ndarray
-    slope: np.ndarray
-    curve: np.ndarray
+    value: Ints
+    slope: Ints
+    curve: Ints
     value_bits: int
     slope_bits: int
     curve_bits: int
 
     @property
-    def words(self) -> np.ndarray:
-        """The ROM contents, {value, slope, curve}, int64[segments]."""
+    def words(self) -> Ints:
+        """The ROM contents {value, slope, curve}, int64[segments]."""
         return (((self.value << self.slope_bits) | self.slope) << self.curve_bits) | self.curve
 
     @property
@@ -64,25 +71,33 @@ class ParabolaTable:
 
 @dataclass(frozen=True)
 class ConstantTable:
-    """Constants: `value` codes, int64[segments], and their width."""
+    """Constants, one per segment: `value`, codes int64[segments] of `word_bits` bits."""
 
     name: str
-    value: np.ndarray
+    value: Ints
     word_bits: int
 
     @property
-    def words(self) -> np.ndarray:
-        """The ROM contents."""
+    def words(self) -> Ints:
+        """The ROM contents, int64[segments]."""
         return self.value
 
 
-def _lines(name, left, right, midpoint, value_scale, value_bits, slope_scale, slope_bits):
-    """Quantize the lines through `left` and `right`, moved by half their error at `midpoint`.
+Table = LineTable | ParabolaTable | ConstantTable
 
-    left, right: the curve at the ends of each segment. midpoint: (chord - curve) where the two
-    are furthest apart. Slopes are stored as magnitudes; the user of a table knows their sign.
+
+def _lines(
+    name: str, left: Reals, right: Reals, error: Reals,
+    value_scale: float, value_bits: int, slope_scale: float, slope_bits: int,
+) -> LineTable:  # fmt: skip
+    """Quantize the chords of a curve, moved by half their error towards the curve.
+
+    left, right: float64[segments], the curve at the ends of each segment. error: float64[segments],
+    chord - curve where the two are furthest apart. value_scale, slope_scale: codes per 1.0. Slopes
+    are stored as magnitudes; the reader of a table knows their sign. Raises ValueError if a slope
+    does not fit its bits.
     """
-    value = np.floor((left - midpoint / 2) * value_scale + 0.5).astype(np.int64)
+    value = np.floor((left - error / 2) * value_scale + 0.5).astype(np.int64)
     slope = np.floor(np.abs(right - left) * slope_scale + 0.5).astype(np.int64)
     value = np.clip(value, 0, (1 << value_bits) - 1)
     if slope.max() >= 1 << slope_bits:
@@ -92,9 +107,9 @@ def _lines(name, left, right, midpoint, value_scale, value_bits, slope_scale, sl
 
 @lru_cache
 def inverse_sqrt_linear_table(config: Config) -> LineTable:
-    """1/sqrt(x), x in [1, 4): the segments of [1, 2), then those of [2, 4). Falling lines.
+    """1/sqrt(x), 1 <= x < 4, in falling lines: the segments of [1, 2), then those of [2, 4).
 
-    Value: u0.`root_value_bits`. Slope: 8 times finer, a segment.
+    Value: u0.`root_value_bits` (u0.21). Slope: per segment, in units 8 times finer (2**-24).
     """
     a, b = _octaves(config.root_index_bits)
     left, right = a**-0.5, b**-0.5
@@ -108,8 +123,8 @@ def inverse_sqrt_linear_table(config: Config) -> LineTable:
     )  # fmt: skip
 
 
-def _octaves(index_bits: int) -> tuple[np.ndarray, np.ndarray]:
-    """Ends of 2**index_bits segments each of [1, 2) and [2, 4), float64[segments]."""
+def _octaves(index_bits: int) -> tuple[Reals, Reals]:
+    """Left and right ends of 2**index_bits segments each of [1, 2) and [2, 4)."""
     segments = 1 << index_bits
     octave = np.repeat([1.0, 2.0], segments)
     k = np.tile(np.arange(segments), 2)
@@ -118,10 +133,11 @@ def _octaves(index_bits: int) -> tuple[np.ndarray, np.ndarray]:
 
 @lru_cache
 def inverse_sqrt_parabolas(config: Config) -> ParabolaTable:
-    """1/sqrt(x), x in [1, 4): parabolas through the curve at the three Chebyshev points of each
-    segment, within a few percent of the best ones.
+    """1/sqrt(x), 1 <= x < 4, in parabolas through the curve at the three Chebyshev points of each
+    segment; their error is within a few percent of that of the best parabolas.
 
-    Value: u0.`quadratic_value_bits`. Slope and curve: 8 times finer, a segment (squared).
+    Value: u0.`quadratic_value_bits` (u0.20). Slope and curve: per segment and segment squared, in
+    units 8 times finer (2**-23). Raises ValueError if a slope or curve does not fit its bits.
     """
     a, b = _octaves(config.quadratic_index_bits)
     t = 0.5 + 0.5 * np.cos(np.pi * np.array([5, 3, 1]) / 6)
@@ -132,20 +148,20 @@ def inverse_sqrt_parabolas(config: Config) -> ParabolaTable:
     value = y[:, 0] - t[0] * (slope + curve * t[0])
     scale = 2.0**config.quadratic_value_bits
     bits = config.quadratic_value_bits, config.quadratic_slope_bits, config.quadratic_curve_bits
-    columns = [
+    values, slopes, curves = (
         np.clip(np.floor(column * factor + 0.5).astype(np.int64), 0, (1 << width) - 1)
         for column, factor, width in zip(
             (value, -slope, curve), (scale, 8 * scale, 8 * scale), bits, strict=True
         )
-    ]
+    )
     if (-slope * 8 * scale).max() >= 1 << bits[1] or (curve * 8 * scale).max() >= 1 << bits[2]:
         raise ValueError("table inverse_sqrt_parabolas: a slope or curve does not fit its bits")
-    return ParabolaTable("inverse_sqrt_parabolas", *columns, *bits)
+    return ParabolaTable("inverse_sqrt_parabolas", values, slopes, curves, *bits)
 
 
 @lru_cache
 def inverse_sqrt_start(config: Config) -> ConstantTable:
-    """1/sqrt(x), x in [1, 4): the middle of its range in each segment, in `root`."""
+    """1/sqrt(x), 1 <= x < 4: the middle of its range in each segment, in `root` (u0.18)."""
     a, b = _octaves(config.start_index_bits)
     middle = config.root.quantize((a**-0.5 + b**-0.5) / 2)
     return ConstantTable("inverse_sqrt_start", middle, config.root.bits)
@@ -153,9 +169,9 @@ def inverse_sqrt_start(config: Config) -> ConstantTable:
 
 @lru_cache
 def log_table(config: Config) -> LineTable:
-    """-log2(1 - v), v in [0, 1/2). Rising lines; v = 0 gives exactly 0.
+    """-log2(1 - v), 0 <= v < 1/2, in rising lines; v = 0 gives exactly 0.
 
-    Value: `log_value`. Slope: units of `log_value`, a segment.
+    Value: `log_value` (u0.22). Slope: per segment, in units of `log_value`.
     """
     segments = 1 << config.log_index_bits
     a = np.arange(segments) / (2 * segments)
@@ -172,10 +188,11 @@ def log_table(config: Config) -> LineTable:
 
 @lru_cache
 def exp_table(config: Config) -> LineTable:
-    """2**-f, f in [0, 1). Falling lines.
+    """2**-f, 0 <= f < 1, in falling lines.
 
-    `power_log` is cut, not rounded, to its fraction; so the curve is taken half a unit to the
-    right, which centres the error of the cut. Value: `exp_value`. Slope: its units, a segment.
+    `power_log` is cut, not rounded, to its fraction. The curve is taken half a unit to the right,
+    which centres the error of the cut. Value: `exp_value` (u0.20). Slope: per segment, in units of
+    `exp_value`.
     """
     segments = 1 << config.exp_index_bits
     a = np.arange(segments) / segments + config.power_log.lsb / 2
@@ -192,9 +209,9 @@ def exp_table(config: Config) -> LineTable:
 
 @lru_cache
 def reciprocal_table(config: Config) -> LineTable:
-    """1/m, m in [1, 2). Falling lines.
+    """1/m, 1 <= m < 2, in falling lines.
 
-    Value: u0.`reciprocal_value_bits`. Slope: its units, a segment.
+    Value: u0.`reciprocal_value_bits` (u0.20). Slope: per segment, in the same units.
     """
     segments = 1 << config.reciprocal_index_bits
     a = 1 + np.arange(segments) / segments
@@ -209,8 +226,8 @@ def reciprocal_table(config: Config) -> LineTable:
     )  # fmt: skip
 
 
-def tables(config: Config) -> list[LineTable | ParabolaTable | ConstantTable]:
-    """All tables of a configuration, those of methods that it does not use included."""
+def tables(config: Config) -> list[Table]:
+    """All tables of `config`, including those of methods that it does not use."""
     return [
         inverse_sqrt_linear_table(config), inverse_sqrt_parabolas(config),
         inverse_sqrt_start(config),

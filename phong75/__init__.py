@@ -1,10 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Phong75's model: scenes to spans, the bit-accurate twin, the float64 reference.
+"""Phong75's model: scenes to spans, the bit-accurate twin of the RTL, the float64 reference.
 
-import phong75
-front = phong75.front_end(phong75.load_scene("teapot"))
-pixels = phong75.render(front.frame)             # to the bit what the RTL gives
-exact = phong75.reference.render(front.frame)    # 255 * S in float64
+    import phong75
+
+    front = phong75.front_end(phong75.load_scene("teapot"))
+    pixels = phong75.render(front.frame)             # bit for bit what the RTL gives
+    exact = phong75.reference.render(front.frame)    # 255 S in float64, eq. (3) of the paper
+    phong75.picture(front.frame, pixels)             # a PIL image, which a notebook shows
+    phong75.picture(front.frame, pixels).save("teapot.png")
+
+Arrays are numpy arrays; the docstrings give their shapes and formats. What a user does wrong raises
+`InputError` with one line that says where and how.
 """
 
 from __future__ import annotations
@@ -29,6 +35,7 @@ if TYPE_CHECKING:
         bundled_scenes,
         front_end,
         load_scene,
+        picture,
         read_spans,
         reference,
         render,
@@ -55,6 +62,7 @@ __all__ = [
     "bundled_scenes",
     "front_end",
     "load_scene",
+    "picture",
     "read_spans",
     "reference",
     "render",

@@ -1,12 +1,15 @@
-// Latency of every module, in clocks from input to output, as sums that explain themselves.
-// A module's own LATENCY parameter refers to its line here, because Verilog-2005 gives a parent no
-// other way to read it; every module's testbench asserts it.
+// SPDX-License-Identifier: MIT
+// Latency of every module, in cycles from input to output: one sum per module, with a comment per
+// term. "name: step" names the section of the module, which is also the function of its twin, and
+// the step in it.
+// LATENCY of a module refers to its macro here, because Verilog-2005 gives a parent no other way to
+// read it. The testbench of every module asserts its LATENCY.
 `ifndef PHONG_LATENCY_VH
 `define PHONG_LATENCY_VH
 `include "phong_config.vh"
 
 `define PHONG_MULTIPLIER_LATENCY 2         // operand register, product register
-`define PHONG_NARROW_MULTIPLIER_LATENCY 4  // 8 rows, three levels of an adder tree
+`define PHONG_NARROW_MULTIPLIER_LATENCY 4  // 8 rows, three levels of the adder tree
 `define PHONG_ROM_LATENCY 2                // array register, output register
 `define PHONG_RAM_LATENCY 2                // array register, output register
 `define PHONG_SMALL_RAM_LATENCY 1          // output register
@@ -21,7 +24,7 @@
   + 1                                /* refine: subtract */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
-// The other methods for 1/sqrt.
+// Other methods for 1/sqrt.
 `define PHONG_INVERSE_SQRT_QUADRATIC_LATENCY \
   ( 1                                /* lookup: align, address */ \
   + `PHONG_ROM_LATENCY \
@@ -41,8 +44,8 @@
   + `PHONG_ROUND_SATURATE_LATENCY )
 
 `define PHONG_INVERSE_SQRT_START_LATENCY \
-  ( 1                                /* align, address; magic: align */ \
-  + `PHONG_ROM_LATENCY )             /* magic: subtract, shift */
+  ( 1                                /* start: address; fast inverse: align */ \
+  + `PHONG_ROM_LATENCY )             /* fast inverse: subtract, shift */
 
 `define PHONG_INVERSE_SQRT_ITERATED_LATENCY \
   ( `PHONG_INVERSE_SQRT_START_LATENCY \
@@ -58,7 +61,7 @@
                                      /* significant bits of three components; shift */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
-// From a normal to zero_normal.
+// From an interpolated normal to zero_normal.
 `define PHONG_ZERO_NORMAL_LATENCY \
   ( 1                                /* significant bits of three components */ \
   + `PHONG_LEADING_ZEROS_LATENCY \
@@ -67,8 +70,8 @@
 `define PHONG_NORMALIZER_LATENCY \
   ( `PHONG_ALIGN_LATENCY \
   + `PHONG_MULTIPLIER_LATENCY        /* squares */ \
-  + 2                                /* sum of squares */ \
-  + 1                                /* operand of the root */ \
+  + 2                                /* sum_of_squares */ \
+  + 1                                /* root_operand */ \
   + `PHONG_INVERSE_SQRT_LATENCY \
   + `PHONG_MULTIPLIER_LATENCY        /* scale */ \
   + 1                                /* scale: double */ \
@@ -81,7 +84,7 @@
 `define PHONG_QUADRATIC_NORMALIZER_LATENCY \
   ( 1                                /* clamp */ \
   + `PHONG_LEADING_ZEROS_LATENCY     /* shifts */ \
-  + `PHONG_LEFT_SHIFTER_LATENCY      /* align; that of the other square takes longer, in time */ \
+  + `PHONG_LEFT_SHIFTER_LATENCY      /* align; C takes longer, but is needed later */ \
   + `PHONG_INVERSE_SQRT_LATENCY \
   + `PHONG_MULTIPLIER_LATENCY        /* versine: square of the root */ \
   + `PHONG_ROUND_SATURATE_LATENCY \
@@ -89,7 +92,7 @@
   + 2                                /* versine: shift twice */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
-// From the interpolators to the shading unit.
+// From the interpolators to shading_unit.
 `define PHONG_NORMAL_LATENCY \
   ( `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_QUADRATIC_SPANS ? \
         `PHONG_QUADRATIC_NORMALIZER_LATENCY : \
@@ -100,30 +103,30 @@
 `define PHONG_HALF_VECTOR_CROSS_LATENCY \
   ( (`PHONG_CONSTANT_HALF_VECTOR ? `PHONG_CONSTANT_HALF_VECTOR_LEVELS \
                                  : `PHONG_MULTIPLIER_LATENCY + 1) \
-                                     /* products with h, fetch */ \
+                                     /* products with h; a register behind the DSP blocks */ \
   + 1                                /* subtract */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
 `define PHONG_VERSINE_OF_CROSS_LATENCY \
   ( `PHONG_MULTIPLIER_LATENCY        /* squares */ \
-  + 2                                /* fetch, sum */ \
+  + 2                                /* a register behind the DSP blocks; sum */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
 `define PHONG_REFLECTION_LATENCY \
   (`PHONG_HALF_VECTOR_CROSS_LATENCY + `PHONG_VERSINE_OF_CROSS_LATENCY)
 
-// From what the shading unit is given to 1 - cos(s).
+// From the input of shading_unit to 1 - cos(s).
 `define PHONG_HIGHLIGHT_LATENCY \
   ( `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_DOT_FIRST ? `PHONG_VERSINE_OF_CROSS_LATENCY : \
     `PHONG_NORMAL_METHOD == `PHONG_NORMAL_METHOD_QUADRATIC_SPANS ? 0 : `PHONG_REFLECTION_LATENCY )
 
 `define PHONG_LOG_LATENCY \
   ( (`PHONG_LOG_OCTAVES ? `PHONG_LEADING_ZEROS_LATENCY + `PHONG_LEFT_SHIFTER_LATENCY : 0) \
-                                     /* leading ones */ \
-  + `PHONG_ROM_LATENCY               /* log lookup */ \
-  + `PHONG_MULTIPLIER_LATENCY        /* log refine: slope * offset */ \
-  + 1                                /* log refine: add */ \
-  + `PHONG_LEADING_ZEROS_LATENCY     /* log normalize */ \
+                                     /* leading_ones */ \
+  + `PHONG_ROM_LATENCY               /* log_lookup */ \
+  + `PHONG_MULTIPLIER_LATENCY        /* log_refine: slope * offset */ \
+  + 1                                /* log_refine: add */ \
+  + `PHONG_LEADING_ZEROS_LATENCY     /* log_normalize */ \
   + `PHONG_LEFT_SHIFTER_LATENCY )
 
 `define PHONG_SPECULAR_COSINE_LATENCY \
@@ -136,24 +139,24 @@
 `define PHONG_SPECULAR_POWER_TABLES_LATENCY \
   ( `PHONG_LOG_LATENCY \
   + `PHONG_TIMES_EXPONENT_LATENCY \
-  + 3                                /* times exponent: shift twice, saturate */ \
-  + `PHONG_ROM_LATENCY               /* exp lookup */ \
-  + `PHONG_NARROW_MULTIPLIER_LATENCY /* exp refine: slope * offset */ \
-  + 1                                /* exp refine: subtract */ \
-  + 2                                /* exp shift: twice */ \
-  + `PHONG_ROUND_SATURATE_LATENCY    /* exp shift: round */ \
+  + 3                                /* times_exponent: shift twice, saturate */ \
+  + `PHONG_ROM_LATENCY               /* exp_lookup */ \
+  + `PHONG_NARROW_MULTIPLIER_LATENCY /* exp_refine: slope * offset */ \
+  + 1                                /* exp_refine: subtract */ \
+  + 2                                /* exp_shift: shift twice */ \
+  + `PHONG_ROUND_SATURATE_LATENCY    /* exp_shift: round */ \
   + `PHONG_POWER_BYPASS )            /* bypass */
 
-// The other methods for cos(s)^n.
+// Other methods for cos(s)^n.
 `define PHONG_SQUARING_STAGE_LATENCY \
   ( `PHONG_MULTIPLIER_LATENCY        /* products */ \
   + `PHONG_ROUND_SATURATE_LATENCY \
-  + 1 )                              /* choice */
+  + 1 )                              /* select */
 
 `define PHONG_SPECULAR_POWER_SQUARING_LATENCY \
   ( `PHONG_SPECULAR_COSINE_LATENCY \
   + (`PHONG_EXPONENT_BITS - `PHONG_EXPONENT_FRACTION - 1) * `PHONG_SQUARING_STAGE_LATENCY \
-  + 1 )                              /* last: choice */
+  + 1 )                              /* last: select */
 
 `define PHONG_SPECULAR_POWER_SCHLICK_LATENCY \
   ( `PHONG_ROUND_SATURATE_LATENCY    /* denominator: versine */ \
@@ -174,7 +177,7 @@
     `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_SQUARING ? `PHONG_SPECULAR_POWER_SQUARING_LATENCY : \
     `PHONG_SPECULAR_POWER_SCHLICK_LATENCY )
 
-// From the versine to where its exponent is wanted.
+// From `versine` to its `exponent`.
 `define PHONG_EXPONENT_LATENCY \
   ( `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_TABLES ? `PHONG_LOG_LATENCY : \
     `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_SQUARING ? `PHONG_SPECULAR_COSINE_LATENCY - 1 : 0 )
@@ -191,7 +194,7 @@
 `define PHONG_DIFFUSE_PRODUCT_LATENCY \
   ( `PHONG_CONSTANT_DIFFUSE ? `PHONG_CONSTANT_DIFFUSE_LEVELS : `PHONG_MULTIPLIER_LATENCY )
 
-// Of the slower of both, if there are two.
+// Of the slower product, if there are two.
 `define PHONG_PRODUCTS_LATENCY \
   ( `PHONG_SPECULAR \
     & (!`PHONG_DIFFUSE | (`PHONG_WEIGHT_PRODUCT_LATENCY > `PHONG_DIFFUSE_PRODUCT_LATENCY)) \
@@ -214,13 +217,13 @@
 
 `define PHONG_SHADING_UNIT_LATENCY \
   ( `PHONG_SPECULAR_LATENCY \
-  + `PHONG_COLOUR_CHANNEL_LATENCY )  /* W * power runs beside its products */
+  + `PHONG_COLOUR_CHANNEL_LATENCY )  /* W * power runs beside the products in it */
 
 `define PHONG_INTENSITY_CODE_LATENCY \
   ( 1                                /* clamp, cut */ \
   + 2 )                              /* code: times 255, round */
 
-// From a pixel that leaves the interpolators to its colour.
+// From a pixel of span_walker to its colour.
 `define PHONG_PIXEL_LATENCY \
   ( `PHONG_TECHNIQUE == `PHONG_TECHNIQUE_PHONG \
   ? `PHONG_NORMAL_LATENCY + `PHONG_SHADING_UNIT_LATENCY \

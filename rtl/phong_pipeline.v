@@ -1,39 +1,48 @@
-// phong_pipeline: spans in, shaded pixels out, one pixel a clock (Bui Tuong Phong, 1975).
-// Spans become pixels; a unit for the technique gives them colours: Phong's own, or the paper's
-// older
-// ones, Gouraud's interpolated intensities or one intensity a face; a FIFO takes back-pressure.
-// Latency from an accepted span to its first pixel: PHONG_PIXEL_LATENCY + 3. Wiring in data order.
+// SPDX-License-Identifier: MIT
+// phong_pipeline: shades spans: spans in, coloured pixels out (Bui Tuong Phong, "Illumination for
+// Computer Generated Pictures", 1975).
+// span_walker turns spans into pixels. One unit gives each pixel its colour, by the technique of
+// the configuration: phong_unit (or quadratic_unit), or one of the techniques that Phong compares
+// with, gouraud_unit (interpolated intensities) and flat_unit (one intensity per face). pixel_fifo
+// holds finished pixels under back-pressure. The module holds the wiring, in data order.
+// Latency: PHONG_PIXEL_LATENCY + 3 cycles from an accepted span to its first pixel (see latency.vh;
+// 77 by default).
+// Throughput: one pixel per cycle, also if every span has one pixel.
+// Reset: synchronous; drops all spans and pixels in flight. Registers and material table keep their
+// contents.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
 
 module phong_pipeline (
     input wire clk,
-    input wire reset,  // synchronous; registers and material table keep their contents
+    input wire reset,  // synchronous
 
-    // write port for registers and material table (see register_map); hold during a frame;
-    // the older techniques have neither
-    input wire                                                   write_enable,
-    input wire [`PHONG_MATERIAL_BITS+`PHONG_WEIGHT_INDEX_BITS:0] write_address,
-    input wire [2*`PHONG_COEFFICIENT_BITS:0]                     write_word,
+    // write port of registers and material table; write between frames only. gouraud_unit and
+    // flat_unit have neither registers nor table.
+    input wire                                                   write_enable,   // 1: write
+    input wire [`PHONG_MATERIAL_BITS+`PHONG_WEIGHT_INDEX_BITS:0] write_address,  // see register_map
+    input wire [2*`PHONG_COEFFICIENT_BITS:0]                     write_word,     // see register_map
 
-    // spans: {material, length, y, x, step z, y, x (s1.30), start z, y, x (s1.30)};
-    // Gouraud: blue, green, red in place of z, y, x; flat: without the steps
+    // spans: {material, length, y, x, step z, y, x, start z, y, x}; start and step are s1.30;
+    // length, y and x are in pixels. Gouraud shading: blue, green, red in place of z, y, x; flat
+    // shading: the same without step. For quadratic_spans see `values` of quadratic_unit.
     input  wire                        s_axis_tvalid,
     output wire                        s_axis_tready,
     input  wire [`PHONG_SPAN_BITS-1:0] s_axis_tdata,
-    input  wire                        s_axis_tlast,   // last span of the frame
+    input  wire                        s_axis_tlast,  // the span is the last of the frame
 
-    // pixels: {y, x, red, green, blue}
+    // pixels: {y, x, red, green, blue}: y and x in pixels, codes from 0 to 255; m_axis_tlast: the
+    // pixel is the last of the frame
     output wire                                                       m_axis_tvalid,
     input  wire                                                       m_axis_tready,
     output wire [(2*`PHONG_COORDINATE_BITS+3*`PHONG_COLOUR_BITS)-1:0] m_axis_tdata,
-    // last pixel of the frame
     output wire                                                       m_axis_tlast,
 
-    output wire illegal_span,  // for one clock: a span left its word, the counter, or was empty
-    output wire zero_normal,   // for one clock: a pixel's normal is the zero vector
-    output wire unsupported    // for one clock: a word or a span needs what this build leaves out
+    // flags: one-cycle pulses
+    output wire illegal_span,  // a span was empty, or its x or a component left its word
+    output wire zero_normal,   // the normal of a pixel is the zero vector
+    output wire unsupported    // a write or a span needs what this build leaves out
 );
 
   localparam TECHNIQUE          = `PHONG_TECHNIQUE;
@@ -47,7 +56,7 @@ module phong_pipeline (
   // ---- spans to pixels ----
   localparam VALUES_BITS = SPAN_BITS - MATERIAL_BITS - 3 * COORDINATE_BITS - 1;
 
-  wire [VALUES_BITS-1:0] span_values;  // what is interpolated over the span
+  wire [VALUES_BITS-1:0] span_values;  // start and step of what is interpolated
   wire [COORDINATE_BITS-1:0] span_x, span_y;
   wire [COORDINATE_BITS:0] span_length;
   wire [MATERIAL_BITS-1:0] span_material;
@@ -130,7 +139,7 @@ module phong_pipeline (
       );
     end else if (TECHNIQUE == `PHONG_TECHNIQUE_GOURAUD) begin : gen_gouraud
       assign zero_normal = 1'b0;  // there are no normals
-      assign unsupported = write_enable;  // there is nothing to write
+      assign unsupported = write_enable;  // there is no register and no table
 
       gouraud_unit u_gouraud_unit (
           .clk(clk),
@@ -143,7 +152,7 @@ module phong_pipeline (
           .overflow(overflow)
       );
     end else begin : gen_flat
-      assign overflow = 1'b0;  // nothing is added
+      assign overflow = 1'b0;  // nothing is interpolated
       assign zero_normal = 1'b0;
       assign unsupported = write_enable;
 
@@ -159,7 +168,7 @@ module phong_pipeline (
     end
   endgenerate
 
-  // The older techniques have no registers and no materials.
+  // Gouraud and flat shading have no registers and no materials.
   wire unused = &{1'b0, write_address, write_word, pixel_material};
 
   // ---- pixels out ----

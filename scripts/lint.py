@@ -65,6 +65,8 @@ def main() -> int:
     )
     said.append(tool("ruff", "check", "--quiet", "--output-format=concise"))
     said.append(tool("ruff", "format", "--check", "--quiet"))
+    said.append(tool("lint-imports", "--no-logo", "--cache-dir", design.BUILD / "import_linter"))
+    said.append(tool("mypy", "--cache-dir", design.BUILD / "mypy"))
     said = [text.strip() for text in said if text.strip()]
     for text in said:
         print(text, file=sys.stderr)

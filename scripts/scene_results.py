@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The README's table of scenes, measured anew: `phong75 scenes`.
+"""Every bundled scene through RTL, twin and reference: `phong75 scenes`.
 
 Every bundled scene at every promised size through RTL, twin and reference; one row a scene. All
 numbers also go to build/results.json.
@@ -14,8 +14,9 @@ from phong75.model import twin
 from phong75.model.analysis import error_budget, metrics, reference
 from phong75.model.config import DEFAULT as CONFIG
 from phong75.model.front.scene import bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.scripts import console, recorded
+from phong75.scripts.docs import tables
 from phong75.sim.design import BUILD
 from phong75.sim.frame.run_frame import Job, SimResult, simulate_jobs
 
@@ -24,10 +25,6 @@ SCHEMA = 1
 FPS = 30
 SIZES = ((512, 512), (640, 480), (1920, 1080))
 CLOCK_HZ = 200e6
-HEADER = """\
-| scene | pixels | spans | RTL ≠ model | largest error | bound | rounded right | cycles a pixel | \
-frames/s |
-|---|--:|--:|--:|--:|--:|--:|--:|--:|"""
 
 
 @dataclass
@@ -63,20 +60,6 @@ def measure(scene: str) -> list[Result]:
     return results
 
 
-def row(scene: str, results: list[Result]) -> str:
-    """The README's row of a scene: the largest size's numbers, the worst of all sizes' errors."""
-    big = results[-1]
-    pixels = len(big.simulation.pixels.x)
-    fps = ", ".join(f"{result.max_fps:.0f}" for result in results)
-    return (
-        f"| {scene} | {pixels} | {big.spans} | {sum(r.mismatches for r in results)} "
-        f"| {max(r.error['max_lsb'] for r in results):.3f} "
-        f"| {max(r.bound_lsb for r in results):.3f} "
-        f"| {100 * min(r.error['correctly_rounded'] for r in results):.2f} % "
-        f"| {big.simulation.cycles / pixels:.4f} | {fps} |"
-    )
-
-
 def as_dict(scene: str, size: tuple[int, int], result: Result) -> dict:
     """One scene at one size, for JSON."""
     cycles = result.simulation.cycles
@@ -87,6 +70,15 @@ def as_dict(scene: str, size: tuple[int, int], result: Result) -> dict:
         "bound_lsb": float(result.bound_lsb),
         "correctly_rounded": result.error["correctly_rounded"],
     }  # fmt: skip
+
+
+def figures(measured: dict[str, list[Result]]) -> dict:
+    """What is recorded: {"clock_hz", "fps", "scenes": {scene: one `as_dict` a size}}."""
+    found = {
+        scene: [as_dict(scene, *pair) for pair in zip(SIZES, results, strict=True)]
+        for scene, results in measured.items()
+    }
+    return {"clock_hz": CLOCK_HZ, "fps": FPS, "scenes": found}
 
 
 def failures(found: list[dict]) -> list[str]:
@@ -100,14 +92,15 @@ def failures(found: list[dict]) -> list[str]:
 
 
 def main(record: bool) -> int:
-    """Print the table; returns the exit code. Raises BuildError, SimulationError."""
+    """Print the table of docs/results.md; returns the exit code. Raises BuildError,
+    SimulationError."""
     recorded.check(record)
-    rows, found = [], []
+    measured = {}
     for scene in bundled_scenes():
         console.phase(scene)
-        measured = measure(scene)
-        rows.append(row(scene, measured))
-        found += [as_dict(scene, *pair) for pair in zip(SIZES, measured, strict=True)]
+        measured[scene] = measure(scene)
+    found = figures(measured)
+    rows = [run for runs in found["scenes"].values() for run in runs]
     about = {
         "schema": SCHEMA,
         "fps": FPS,
@@ -115,13 +108,13 @@ def main(record: bool) -> int:
         "cycles_available": int(CLOCK_HZ // FPS),
     }
     BUILD.mkdir(parents=True, exist_ok=True)
-    (BUILD / "results.json").write_text(json.dumps(about | {"rows": found}, indent=1) + "\n")
-    console.say("\n".join([HEADER, *rows]))
-    wrong = failures(found)
+    (BUILD / "results.json").write_text(json.dumps(about | {"rows": rows}, indent=1) + "\n")
+    console.say(tables.scenes(found))
+    wrong = failures(rows)
     if record:
         recorded.record(
-            "scenes", "make scenes", ("verilator", "numpy"), [], {"frames": len(found)},
-            failed=bool(wrong), readme="\n".join([HEADER, *rows]), frames=found, **about,
+            "scenes", "make scenes", ("verilator", "numpy"), found, {"frames": len(rows)},
+            failed=bool(wrong),
         )  # fmt: skip
     for line in wrong:
         console.failure(line)

@@ -15,10 +15,9 @@ from phong75.model.analysis.pruning import prune
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import InputError
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.scripts import console, recorded
 from phong75.scripts.console import Steps
-from phong75.scripts.recorded import Row
 from phong75.scripts.synthesis import ecp5
 
 
@@ -40,7 +39,7 @@ def table(report: dict) -> Table:
     out.add_column("value", justify="right")
     out.add_row("LUT4 / carry cells / LUT RAM", f"{used['lut']} / {used['carry']} / "
                 f"{used['lut_ram']}")  # fmt: skip
-    out.add_row("LUT sites, carry and RAM included", str(used["lut_sites"]))
+    out.add_row("LUT sites (nextpnr)", str(used["lut_sites"]))
     out.add_row("FF", str(used["ff"]))
     out.add_row("MULT18X18D", str(used["dsp"]))
     out.add_row("EBR", str(used["ebr"]))
@@ -58,43 +57,23 @@ def table(report: dict) -> Table:
     return out
 
 
-def rows(report: dict) -> list[Row]:
-    """The lines of `report` for the README's table."""
-    used, clock, grade = report["resources"], report["fmax_mhz"], report["grade"]
-    chip = f"{report['device']}, grade {grade}"
-    out = [
-        Row(
-            f"clock on a Lattice ECP5 {chip}",
-            f"{clock['median']} MHz, median of {len(report['seeds'])} seeds; best {clock['best']}",
-            f"an estimate of timing, no chip; nextpnr does not check the {report['limit_by']}'s "
-            f"{report['limit_mhz']} MHz, to which it is clamped",
-        )
-    ]
-    if grade == 6:
-        out += [
-            Row(
-                "multipliers, block RAMs",
-                f"{used['dsp']} MULT18X18D, {used['ebr']} DP16KD",
-                "without the harness of shift registers that stands in for pins",
-            ),
-            Row(
-                "logic",
-                f"{used['lut']} LUT4, {used['carry']} carry cells, {used['lut_ram']} LUT RAM "
-                f"cells, {used['ff']} FF",
-                f"together {used['lut_sites']} LUT sites: a carry cell takes two, a LUT RAM cell "
-                "four",
-            ),
-        ]
+def figures(report: dict) -> dict:
+    """What is recorded of `report`: chip, clocks in MHz, and what the pipeline takes of the chip;
+    "gate_equivalents" only where they were counted."""
+    found = {
+        "device": report["device"], "grade": report["grade"], "seeds": len(report["seeds"]),
+        "clock_mhz": report["fmax_mhz"], "clock_reported_mhz": report["fmax_reported_mhz"],
+        "limit_mhz": report["limit_mhz"], "limit_by": report["limit_by"],
+        "resources": report["resources"],
+    }  # fmt: skip
     if gates := report.get("gates"):
-        out.append(
-            Row(
-                "gate equivalents (NAND2)",
-                f"{gates['equivalents']}",
-                "Oklahoma State University's 0.18 µm cells (Debian's qflow-tech-osu018), without "
-                "the three ROMs and the RAM of the tables; no clock tree, no wires: not an area",
-            )
-        )
-    return out
+        found["gate_equivalents"] = gates["equivalents"]
+    return found
+
+
+def effort(report: dict) -> dict[str, int]:
+    """How much was computed for `report`: seeds routed, and whether gates were counted."""
+    return {"seeds": len(report["seeds"]), "gates": int("gates" in report)}
 
 
 def main(config: Config, grade: int, seeds: int, count_gates: bool, record: bool) -> int:
@@ -112,10 +91,9 @@ def main(config: Config, grade: int, seeds: int, count_gates: bool, record: bool
             f"synth-grade{grade}",
             "make synth" + (f" GRADE={grade}" if grade != 6 else ""),
             tuple(report["tools"]),
-            rows(report),
-            effort={"seeds": seeds, "gates": int(count_gates)},
+            figures(report),
+            effort=effort(report),
             part="" if config == DEFAULT else f"{config.name} is not the default configuration",
-            report={key: value for key, value in report.items() if key != "seeds"},
         )
     console.say(console.shown(ecp5.FOLDER / config.name / "report.json"))
     return console.GOOD

@@ -1,1 +1,2 @@
-"""The simulation: benches, their cocotb testbench classes, and the build with Verilator."""
+# SPDX-License-Identifier: MIT
+"""Simulation: Verilog testbenches, cocotb testbench classes, proofs, and their builds."""

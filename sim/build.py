@@ -1,10 +1,13 @@
-"""Builds a bench with Verilator for cocotb, once per content. A bench is a Verilog top level in
-sim/frame/ or sim/module/.
+# SPDX-License-Identifier: MIT
+"""Builds testbenches ("benches") with Verilator for cocotb, once per content.
 
-The runtime of Verilator takes most of a build; it is compiled once into build/verilator/ and
-shared, and so are our main program and the runtime's header for each set of options. A bench is
-named after the hash of everything that goes into it, so nothing is built twice and different
-configurations live side by side.
+A bench is a Verilog top level: a file in sim/frame/ or sim/module/, or a generated text. The folder
+of a bench is named after the hash of everything that the build depends on. So nothing is built
+twice, and benches of different configurations exist side by side.
+
+Compiling Verilator's runtime takes most of the time of a build. The runtime is compiled once into
+build/verilator/ and shared. The main program and the runtime's precompiled header are shared in the
+same way, per set of compiler options.
 """
 
 from __future__ import annotations
@@ -28,10 +31,10 @@ from phong75.model.verilog import header
 from phong75.sim import design, environment
 from phong75.sim.design import BUILD, SIM
 
-#: What benches have in common.
+#: Folder of the object files that all benches share.
 SHARED = BUILD / "verilator"
 
-#: The compiler's options. No native instructions: a build may be kept for another machine.
+#: Compiler options. No native instructions, because a cached build may move to another machine.
 CXX_FLAGS = "-std=c++20 -O2 -fno-plt -DVL_TIME_CONTEXT"
 
 _VERILATOR_ROOT = Path(verilator.__file__).resolve().parent
@@ -43,12 +46,24 @@ _RUNTIME = (
 )  # fmt: skip
 
 
-#: Folders of the top levels that benches are built around.
-_BENCHES = (SIM / "frame", SIM / "module")
+#: Folders of the hand-written Verilog top levels.
+BENCH_FOLDERS = (SIM / "frame", SIM / "module")
 
 
-def _benches() -> list[Path]:
-    return [file for folder in _BENCHES for file in sorted(folder.glob("*.v"))]
+def bench_files() -> list[Path]:
+    """The hand-written Verilog top levels."""
+    return [file for folder in BENCH_FOLDERS for file in sorted(folder.glob("*.v"))]
+
+
+def top_file(top: str, rtl: Path | None = None) -> Path:
+    """The Verilog file of `top`, a testbench or a module of the design in `rtl`.
+
+    Raises BuildError if there is none.
+    """
+    for file in (*bench_files(), *design.sources(rtl)):
+        if file.stem == top:
+            return file
+    raise BuildError(f"no Verilog file of {top} in sim/ or in the design")
 
 
 def silent(text: str) -> None:
@@ -56,7 +71,7 @@ def silent(text: str) -> None:
 
 
 class BuildError(Exception):
-    """Verilator or the compiler refused; the message is what they said."""
+    """Verilator or the compiler failed; the message is the tool's output."""
 
 
 def _environment() -> dict[str, str]:
@@ -65,21 +80,21 @@ def _environment() -> dict[str, str]:
 
 
 def run_tool(command: list, cwd: Path | None = None) -> str:
-    """Run a tool in the environment of the installed packages; returns what it said.
+    """Run a tool in the environment of the installed packages; returns its output.
 
-    Raises BuildError with what it said.
+    Raises BuildError with the output if the tool fails.
     """
-    done = subprocess.run(
+    process = subprocess.run(
         [str(c) for c in command], cwd=cwd, env=_environment(), text=True,
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
     )  # fmt: skip
-    if done.returncode:
-        raise BuildError(f"{Path(str(command[0])).name} failed:\n{done.stdout}")
-    return done.stdout
+    if process.returncode:
+        raise BuildError(f"{Path(str(command[0])).name} failed:\n{process.stdout}")
+    return process.stdout
 
 
 def digest(*parts: str | bytes | Path) -> str:
-    """Hash of texts and of files' contents."""
+    """Hash (16 hexadecimal digits) of texts and of the contents of files (Path)."""
     sha = hashlib.sha256()
     for part in parts:
         data = part.read_bytes() if isinstance(part, Path) else part
@@ -88,8 +103,8 @@ def digest(*parts: str | bytes | Path) -> str:
     return sha.hexdigest()[:16]
 
 
-def _replace(path: Path, text: str) -> None:
-    """Write `path` whole or not at all, and only if its text changed."""
+def replace(path: Path, text: str) -> None:
+    """Write `text` to `path` atomically; an unchanged file is not touched."""
     if path.is_file() and path.read_text() == text:
         return
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -99,9 +114,12 @@ def _replace(path: Path, text: str) -> None:
 
 
 @contextmanager
-def _alone(target: Path):
-    """Hold a lock beside `target` while the body makes it: of several processes that need the
-    same, one makes it, and the others wait. The lock ends with its process."""
+def locked(target: Path):
+    """Hold a file lock beside `target` while the body makes it.
+
+    If several processes need the same target, one makes it and the others wait. The operating
+    system releases the lock when the process ends.
+    """
     target.parent.mkdir(parents=True, exist_ok=True)
     with open(target.with_name(f"{target.name}.lock"), "w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
@@ -109,10 +127,10 @@ def _alone(target: Path):
 
 
 def generate_header(config: Config = DEFAULT) -> Path:
-    """Write `phong_config.vh` of `config` into a folder of its own; returns the include folder."""
+    """Write phong_config.vh of `config` into a folder of its own; returns that include folder."""
     text = header(config)
     folder = BUILD / "config" / f"{config.name}-{digest(text)[:8]}"
-    _replace(folder / "phong_config.vh", text)
+    replace(folder / "phong_config.vh", text)
     return folder
 
 
@@ -130,9 +148,9 @@ def runtime_built() -> bool:
 
 
 def runtime() -> Path:
-    """The library of Verilator's runtime, compiled if need be. Raises BuildError."""
+    """The library of Verilator's runtime, compiled if necessary. Raises BuildError."""
     library = _runtime_library()
-    with _alone(library.parent):
+    with locked(library.parent):
         if not library.is_file():
             _compile_runtime(_runtime_sources(), library)
     return library
@@ -150,24 +168,25 @@ def _compile_runtime(sources: list[Path], library: Path) -> None:
         )
         for source in sources
     ]  # fmt: skip
-    said = [job.communicate()[0] for job in jobs]
+    outputs = [job.communicate()[0] for job in jobs]
     if any(job.returncode for job in jobs):
-        raise BuildError("g++ failed on Verilator's runtime:\n" + "".join(said))
+        raise BuildError("g++ failed on Verilator's runtime:\n" + "".join(outputs))
     part = folder / f"part.{os.getpid()}.a"
     run_tool(["ar", "rcs", part, *[folder / f"{name}.o" for name in _RUNTIME]])
     part.replace(library)
 
 
 def _first_header(options: list[str]) -> Path:
-    """The runtime's header, compiled for `options`: half of the time of a small bench is its.
+    """The runtime's header, precompiled for `options`; returns the header's path.
 
-    A compiler that cannot use what was compiled reads the header beside it.
+    Reading this header takes half of the compile time of a small bench. A compiler that cannot use
+    the precompiled file reads the header itself.
     """
     folder = SHARED / f"first-{digest(*options, _INCLUDE / 'verilated.h')}"
     header, compiled = folder / "first.h", folder / "first.h.gch"
-    with _alone(folder):
+    with locked(folder):
         if not compiled.is_file():
-            _replace(header, '#include "verilated.h"\n')
+            replace(header, '#include "verilated.h"\n')
             part = folder / f"{os.getpid()}.gch"
             run_tool(["g++", *options, "-x", "c++-header", header, "-o", part])
             part.replace(compiled)
@@ -175,7 +194,7 @@ def _first_header(options: list[str]) -> Path:
 
 
 class Bench(Verilator):
-    """cocotb's runner for Verilator, with our own main program and the shared runtime."""
+    """cocotb's runner for Verilator, with the project's main program and the shared runtime."""
 
     def __init__(
         self,
@@ -188,20 +207,22 @@ class Bench(Verilator):
         netlist: bool = False,
         quick: bool = False,
     ):
-        """A bench with top level `top`: <top>.v of sim/, a module of the design, or a text in
-        `sources` (file name: text).
+        """A bench with the Verilog top level `top`.
 
-        rtl: folder of the design (a mutated copy, say). trace: able to write a VCD.
-        coverage: folder for the coverage counts of each run. netlist: rtl holds a netlist: no
-        lint, and a compiler that is done sooner. quick: not optimized, for runs of a few thousand
-        clocks.
+        top: <top>.v of sim/frame/ or sim/module/, of the design, or of `sources`.
+        sources: {file name: text} of generated files.
+        rtl: folder of the design, None for the project's own; a mutated copy, for example.
+        trace: whether the bench can write a VCD.
+        coverage: folder for the coverage counts of each run.
+        netlist: `rtl` contains a netlist: no lint, lower compiler optimization.
+        quick: no compiler optimization, for runs of a few thousand cycles.
         """
         self._verilator = (
             ["-Wno-lint", "-Wno-style", "-Wno-fatal", "--output-split-cfuncs", "200"]
             if netlist
             else ["-Wall"]
             if config == DEFAULT
-            else ["-Wall", "-Wno-UNUSED"]  # what a configuration leaves out need not be used
+            else ["-Wall", "-Wno-UNUSED"]  # a configuration may leave signals without a reader
         )
         self._cxx = CXX_FLAGS.replace("-O2", "-O0" if quick else "-O1" if netlist else "-O2")
         super().__init__()
@@ -215,7 +236,7 @@ class Bench(Verilator):
         files = [
             *design.sources(self._rtl),
             *design.headers(self._rtl),
-            *_benches(),
+            *bench_files(),
             SIM / "main.cpp",
         ]
         content = digest(
@@ -231,15 +252,15 @@ class Bench(Verilator):
 
     @property
     def built(self) -> bool:
-        """Whether the program is there already."""
+        """Whether the simulation program exists."""
         return (self.folder / self._top).is_file()
 
     def _build_command(self) -> list:
-        """Unused: `make` builds."""
+        """Unused: `make` replaces cocotb's build."""
         return []
 
     def verilate(self) -> list[Path]:
-        """Have Verilator write its C++ into the folder, once. Returns its files, headers too.
+        """Run Verilator once; returns the C++ files that it writes, headers included.
 
         Raises BuildError.
         """
@@ -247,7 +268,7 @@ class Bench(Verilator):
             return self._written
         self.folder.mkdir(parents=True, exist_ok=True)
         for name, text in self._texts.items():
-            _replace(self.folder / name, text)
+            replace(self.folder / name, text)
         run_tool(
             [
                 _VERILATOR_ROOT / "bin" / "verilator", "--cc", "--vpi", "--prefix", "Vtop",
@@ -256,7 +277,8 @@ class Bench(Verilator):
                 "--output-split", "0", "--public-depth", "1", *self._verilator,
                 *(["--trace"] if self._trace else []),
                 *(["--coverage-line", "--coverage-toggle"] if self._coverage else []),
-                f"-I{self._include}", *(f"-I{f}" for f in (*design.folders(self._rtl), *_BENCHES)),
+                f"-I{self._include}",
+                *(f"-I{folder}" for folder in (*design.folders(self._rtl), *BENCH_FOLDERS)),
                 f"-I{self.folder}",
                 SIM / "lint.vlt", self._source(),
             ]
@@ -265,7 +287,7 @@ class Bench(Verilator):
         return self._written
 
     def make(self, progress: Callable[[str], None] = silent) -> Path:
-        """Build if need be. Returns the folder. Raises BuildError.
+        """Build the simulation program if necessary; returns its folder. Raises BuildError.
 
         progress: called with what a phase does before each that takes seconds.
         """
@@ -274,12 +296,13 @@ class Bench(Verilator):
                 progress("compiling Verilator's runtime (once)")
             library = runtime()
             progress("compiling the testbench (once)")
-            with _alone(self.folder):
+            with locked(self.folder):
                 if not self.built:
                     self._make(library)
         return self.folder
 
     def _make(self, library: Path) -> None:
+        """Verilate, compile and link with `library`, the runtime."""
         units = [file for file in self.verilate() if file.suffix == ".cpp"]
         whole = self.folder / "whole.cpp"
         whole.write_text("".join(f'#include "{unit.name}"\n' for unit in units))
@@ -288,8 +311,8 @@ class Bench(Verilator):
             f"-DVM_COVERAGE={int(bool(self._coverage))}", f"-DVM_TRACE_VCD={int(self._trace)}",
             f"-I{_INCLUDE}", f"-I{_INCLUDE / 'vltstd'}",
         ]  # fmt: skip
-        with ThreadPoolExecutor() as both:  # at once: it is as long as the slower of them
-            objects = list(both.map(lambda make: make(options), (self._model, self._main)))
+        with ThreadPoolExecutor() as pool:  # both compilations in parallel
+            objects = list(pool.map(lambda make: make(options), (self._model, self._main)))
         part = self.folder / f"{self._top}.{os.getpid()}"
         run_tool(
             [
@@ -301,17 +324,17 @@ class Bench(Verilator):
         part.replace(self.folder / self._top)
 
     def _model(self, options: list[str]) -> Path:
-        """Compile what Verilator wrote."""
+        """Compile Verilator's C++; returns the object file."""
         target = self.folder / f"whole.{os.getpid()}.o"
         first = ["-include", _first_header(options)]
         run_tool(["g++", *options, *first, "-c", self.folder / "whole.cpp", "-o", target])
         return target
 
     def _main(self, options: list[str]) -> Path:
-        """Compile the main program, of which there is one for all models with the same ports."""
+        """Compile the main program; returns the object file, shared by models with equal ports."""
         source, ports = SIM / "main.cpp", self.folder / "Vtop.h"
         target = SHARED / f"main-{digest(*options, source, ports)}.o"
-        with _alone(target):
+        with locked(target):
             if not target.is_file():
                 part = target.with_suffix(f".{os.getpid()}")
                 run_tool(["g++", *options, f"-I{self.folder}", "-c", source, "-o", part])
@@ -319,16 +342,17 @@ class Bench(Verilator):
         return target
 
     def _source(self) -> Path:
+        """The Verilog file of the top level."""
         name = f"{self._top}.v"
         if name in self._texts:
             return self.folder / name
-        files = [*_benches(), *design.sources(self._rtl)]
-        return next(file for file in files if file.name == name)
+        return top_file(self._top, self._rtl)
 
     def run(self, test_module: str, folder: Path, **arguments) -> Path:
-        """Run cocotb tests in `folder` (scratch). Arguments as for `Runner.test`.
+        """Build if necessary, then run the cocotb tests of `test_module`.
 
-        Returns the path of the results; the log is in `folder`/sim.log.
+        folder: scratch folder; the log is `folder`/sim.log. arguments: as for cocotb's
+        `Runner.test`. Returns the path of the results (see `sim.results`). Raises BuildError.
         """
         self.make()
         folder.mkdir(parents=True, exist_ok=True)

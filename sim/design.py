@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Where the design's files are: the one place that knows the folders of `rtl/`.
+"""Files of the design: the only module that knows the folders of rtl/.
 
-The file list rtl/phong75.f says which files belong to the design, in the order of the data. A copy
-of `rtl/` (a mutated one, say) brings its own list; a folder without a list, such as that of a
-netlist, is taken as it is.
+rtl/phong75.f lists the files of the design in data order. A copy of rtl/ (a mutated one, for
+example) has its own list. In a folder without a list, such as that of a netlist, all .v files
+belong to the design.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from pathlib import Path
 
 from phong75.sim import environment
 
-#: The package: the checkout, or where a wheel was installed.
+#: Root of the package: the checkout, or the folder of the installed package.
 PACKAGE = Path(__file__).resolve().parent.parent
 RTL = PACKAGE / "rtl"
 SIM = PACKAGE / "sim"
-#: The modules that stand for those of the same names on a Lattice ECP5.
+#: Modules that replace those of the same names on a Lattice ECP5.
 ECP5 = RTL / "ecp5"
 TOP = "phong_pipeline"
 
@@ -25,7 +25,7 @@ IN_CHECKOUT = (PACKAGE / "pyproject.toml").is_file()
 
 
 def _build_folder() -> Path:
-    """$PHONG75_BUILD; else build/ of a checkout; else phong75/ in the user's cache folder."""
+    """The build folder: $PHONG75_BUILD, else build/ of a checkout, else the user's cache folder."""
     if named := os.environ.get(environment.BUILD):
         return Path(named).resolve()
     if IN_CHECKOUT:
@@ -34,14 +34,15 @@ def _build_folder() -> Path:
     return Path(cache) / "phong75"
 
 
-#: Where everything that is built goes, and nothing else.
+#: Folder of everything that is built.
 BUILD = _build_folder()
 
 
 def sources(rtl: Path | None = None, technology: Path | None = None) -> list[Path]:
-    """The Verilog files of the design in `rtl` (RTL if None), in the order of its file list.
+    """The Verilog files of the design, in the order of its file list.
 
-    technology: a folder whose modules replace those of the same names.
+    rtl: folder of the design, None for the project's own. technology: folder whose modules replace
+    those of the same names; its further modules are appended.
     """
     rtl = rtl or RTL
     listed = rtl / "phong75.f"
@@ -62,16 +63,16 @@ def sources(rtl: Path | None = None, technology: Path | None = None) -> list[Pat
 
 
 def headers(rtl: Path | None = None) -> list[Path]:
-    """The headers that are written by hand (`build.generate_header` writes the other one)."""
+    """The hand-written headers; `build.generate_header` generates phong_config.vh."""
     return sorted((rtl or RTL).glob("*.vh"))
 
 
 def folders(rtl: Path | None = None) -> list[Path]:
-    """The folders in which a tool finds headers and modules by name."""
+    """The folders in which a tool finds the design's headers and modules by name."""
     rtl = rtl or RTL
     return list(dict.fromkeys([rtl, *(file.parent for file in sources(rtl))]))
 
 
 def module_file(name: str, rtl: Path | None = None) -> Path | None:
-    """The file of module `name`; None if the design has no such module."""
+    """The Verilog file of module `name`; None if the design has no such module."""
     return next((file for file in sources(rtl) if file.stem == name), None)

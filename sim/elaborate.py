@@ -1,4 +1,5 @@
-"""What a configuration is made of: the instances that Verilator elaborates."""
+# SPDX-License-Identifier: MIT
+"""Elaboration: the instances of a design in one configuration, as Verilator elaborates them."""
 
 from __future__ import annotations
 
@@ -6,40 +7,76 @@ import json
 import tempfile
 from collections import Counter
 from collections.abc import Iterator
+from pathlib import Path
 
 from phong75.model.config import DEFAULT, Config
-from phong75.sim import design
-from phong75.sim.build import generate_header, run_tool
+from phong75.sim import build, design
+from phong75.sim.build import BENCH_FOLDERS, digest, generate_header, run_tool
 
 
 def includes(config: Config = DEFAULT) -> list[str]:
-    """The options that name the folders of the header of `config` and of the design."""
-    return [f"-I{folder}" for folder in (generate_header(config), *design.folders())]
+    """Verilator's options for the include folders: header of `config`, design, testbenches."""
+    folders = (generate_header(config), *design.folders(), *BENCH_FOLDERS)
+    return [f"-I{folder}" for folder in folders]
 
 
-def instances(config: Config = DEFAULT, top: str = "phong_pipeline") -> Counter[str]:
-    """How many instances of each module there are in `top`, itself included. Raises BuildError."""
+def elaborate(top: str, config: Config = DEFAULT, text: str | None = None) -> dict:
+    """Verilator's syntax tree (JSON) of the elaborated module `top`.
+
+    text: the Verilog text of `top`; None if `top` is a module of the design or a testbench of
+    sim/frame/ or sim/module/. Raises BuildError.
+    """
     with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder, f"{top}.v")
+        if text is None:
+            source = build.top_file(top)
+        else:
+            source.write_text(text)
         run_tool(
             [
-                "verilator", "--json-only", "--no-timing", "-Wno-fatal", "--Mdir", folder,
-                "--top-module", top, *includes(config), design.module_file(top),
+                "verilator", "--json-only", "--no-timing", "-Wno-fatal", "-Wno-lint",
+                "--Mdir", folder, "--top-module", top, *includes(config), source,
             ]
         )  # fmt: skip
-        with open(f"{folder}/V{top}.tree.json") as file:
-            modules = {module["addr"]: module for module in json.load(file)["modulesp"]}
+        return json.loads(Path(folder, f"V{top}.tree.json").read_text())
+
+
+def instances(
+    config: Config = DEFAULT, top: str = design.TOP, text: str | None = None
+) -> Counter[str]:
+    """{module: number of its instances} below and including `top`, in the configuration `config`.
+
+    The result is cached in build/elaborated/ under the hash of all files that it depends on.
+    text: see `elaborate`. Raises BuildError.
+    """
+    key = digest(
+        top,
+        text or build.top_file(top),
+        generate_header(config) / "phong_config.vh",
+        *design.sources(),
+        *design.headers(),
+    )
+    cache = design.BUILD / "elaborated" / f"{top}-{key}.json"
+    if not cache.is_file():
+        build.replace(cache, json.dumps(_count(elaborate(top, config, text), top)))
+    return Counter(json.loads(cache.read_text()))
+
+
+def _count(tree: dict, top: str) -> Counter[str]:
+    """{module: number of its instances} in Verilator's syntax tree."""
+    modules = {module["addr"]: module for module in tree["modulesp"]}
 
     def count(module: dict) -> Counter[str]:
-        found = Counter([module.get("origName") or module["name"]])
+        total = Counter([module.get("origName") or module["name"]])
         for cell in _cells(module["stmtsp"]):
-            found += count(modules[cell["modp"]])
-        return found
+            total += count(modules[cell["modp"]])
+        return total
 
     return count(next(m for m in modules.values() if m["name"] == top))
 
 
 def _cells(node) -> Iterator[dict]:
-    """The instances somewhere in a tree of Verilator's."""
+    """The instances (nodes of type CELL) anywhere in a part of Verilator's syntax tree."""
     if isinstance(node, dict):
         if node.get("type") == "CELL":
             yield node

@@ -1,11 +1,13 @@
-// Simulation program: cocotb on Verilator, with a fast way through long runs.
+// SPDX-License-Identifier: MIT
+// Simulation program: cocotb on Verilator, with a fast loop for long runs.
 //
-// While the top level's output `running` is 1, this loop toggles `clk` itself, without asking
-// cocotb, so that whole frames run at the speed of a bare C++ loop. Otherwise cocotb is in charge
-// as with its own main program. Time stands still meanwhile. A trace turns the fast way off.
+// While the top level's output `running` is 1, this program toggles `clk` in its own loop without
+// calling cocotb, so that whole frames run at the speed of a bare C++ loop. Simulation time stands
+// still meanwhile. Otherwise the program does what cocotb's own main program does. With a trace the
+// fast loop is off.
 //
 // Options: --trace FILE   write a VCD (in builds with a trace)
-//          --bare FILE   no cocotb at all (for `make bench`), see run_bare
+//          --bare FILE    run without cocotb (for `make bench`); see run_bare
 
 #include <chrono>
 #include <cinttypes>
@@ -35,7 +37,7 @@ static void clock(Top &top) {
     top.eval();
 }
 
-// Whether the design asks for the fast way; designs without the output never do.
+// Whether the design asks for the fast loop. A top level without the output `running` never does.
 template <class Top>
 static bool running(const Top &top) {
     if constexpr (requires { top.running; }) {
@@ -45,7 +47,7 @@ static bool running(const Top &top) {
     }
 }
 
-// Clock the design until it stops running. Enters and leaves with clk = 1.
+// Clock the design until its output `running` is 0. `clk` is 1 before and after.
 template <class Top>
 static void run_fast(Top &top) {
     const auto begin = std::chrono::steady_clock::now();
@@ -58,9 +60,11 @@ static void run_fast(Top &top) {
     std::printf("clocks %" PRIu64 " seconds %.6f\n", clocks, seconds.count());
 }
 
-// The bare loop: phong_pipeline fed from memory, its pixels taken and added up; no files, no
-// cocotb. FILE holds 32-bit words: number of register writes, (address, word low, word high) each,
-// number of spans, 32-bit words a span, the place of the last-of-frame bit, pixels; then the spans.
+// The bare loop: feed phong_pipeline from memory, take its pixels and add them up, without files
+// and without cocotb.
+// FILE holds 32-bit words: the number of register writes; address, low word and high word of each;
+// the number of spans, the words per span, the bit of `last` in a span, the number of pixels; then
+// the spans.
 template <class Top>
 static int run_bare(Top &top, const char *name) {
     if constexpr (requires { top.s_axis_tdata; }) {
@@ -115,7 +119,7 @@ static int run_bare(Top &top, const char *name) {
         top.final();
         return 0;
     } else {
-        return 2;  // not the pipeline
+        return 2;  // the top level is not phong_pipeline
     }
 }
 
@@ -124,7 +128,7 @@ static void value_callbacks() {
     }
 }
 
-// One time step, as cocotb's own main program does it.
+// One time step, as in cocotb's own main program.
 static void settle(Vtop &top) {
     do {
         do {
@@ -163,7 +167,7 @@ static void run_cocotb(Vtop &top, const char *trace_file) {
             settle(top);
         }
         const uint64_t next = VerilatedVpi::cbNextDeadline();
-        if (next == ~uint64_t{0}) break;  // nobody waits for anything
+        if (next == ~uint64_t{0}) break;  // no callback is pending
         top.contextp()->time(next);
         VerilatedVpi::callCbs(cbNextSimTime);
         value_callbacks();

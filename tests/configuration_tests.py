@@ -1,8 +1,12 @@
-"""Frames on the builds of every feature, technique and method, with all that must come of them.
+# SPDX-License-Identifier: MIT
+"""Configuration tests: whole frames on a build of one configuration, with the expected result.
 
-A trial is what no module bench can be: the design as a whole in a configuration that is not the
-default one. tests/test_pruning.py and tests/test_trials.py run them; the mutants of a `generate`
-branch that the default configuration leaves out have no other test (tests/campaigns/mutation.py).
+The module testbenches run single modules, most of them in the default configuration. A
+configuration test runs the whole design in a configuration of its own: without a feature, with
+another shading technique or with another arithmetic method. It is the only test of a `generate`
+branch that the default configuration leaves out. tests/test_configurations.py and
+tests/test_pruning.py run the configuration tests; the mutation campaign uses them
+(tests/campaigns/mutation.py).
 """
 
 from __future__ import annotations
@@ -20,24 +24,29 @@ from phong75.model.config import DEFAULT as C
 from phong75.model.config import TECHNIQUES, Config
 from phong75.model.frame import Frame
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
 from phong75.model.registers import writes
+from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import illegal_spans
 from phong75.model.studies.methods import CONFIGS
+from phong75.model.studies.random_frames import random_frame
+from phong75.model.twin.core.register_map import unsupported_write, vanishing_exponent
+from phong75.model.twin.pruning.span_guard import span_guard
 from phong75.sim.build import Bench
 from phong75.sim.frame.run_frame import Job, simulate_jobs
 from phong75.sim.latency import latencies
-from tests.modules.frames import random_frame
 
 SEED = 1975
 
 
-# -- frames that need everything but one feature ---------------------------------------------------
+# -- frames that need all features except one ------------------------------------------------------
 
 
 def plain(seed=SEED, spans: int = 300, longest: int = 12, **changes) -> Frame:
-    """A random frame that needs everything, but for `changes` to its materials: functions of
-    (table, rng) by the name of what they change."""
+    """A random frame that needs every feature, after `changes`.
+
+    changes: functions change(frame, rng) that modify the frame in place; each removes the need for
+    a feature.
+    """
     rng = np.random.default_rng(seed)
     frame = random_frame(seed, spans, longest, two_sided=True)
     frame.materials.exponent[:4] = np.array([1, 1.5, 10, 128]) * C.exponent.one
@@ -48,7 +57,7 @@ def plain(seed=SEED, spans: int = 300, longest: int = 12, **changes) -> Frame:
 
 
 def steepest(frame, rng):
-    """A span with the steepest slopes there are, between normals of the size of unit ones."""
+    """Give the first span the steepest steps of the format, between components of about 1."""
     one = C.normal.one
     s = frame.spans[:1]
     s["length"], s["start"], s["step"] = 2, -one + 1, 2 * one - 2
@@ -68,7 +77,7 @@ def tables_only(frame, rng):
 
 
 def sharp(frame, rng):
-    least = pruning.vanishing_exponent(C)
+    least = vanishing_exponent(C)
     n = rng.integers(least, 128 * C.exponent.one, C.materials)
     frame.materials.exponent[:] = n
     frame.materials.exponent[:3] = least, least + 1, C.exponent.one
@@ -111,13 +120,13 @@ def one_diffuse(frame, rng):
     frame.materials.diffuse[:] = frame.materials.diffuse[0]
 
 
-def opposite(frame, rng):  # the half vector is always the frame's own; here hx < 0
+def opposite(frame, rng):
+    """A half vector with hx < 0. (The default frames have hx >= 0.)"""
     frame.half_vector = (-abs(frame.half_vector[0]), frame.half_vector[1])
 
 
 def size_of_unit(frame, rng):
-    """Normals whose largest component is 1/2 to 1 everywhere, except at the steepest span's ends,
-    which are as large."""
+    """Normals whose largest component is 1/2 to 1 in every pixel, so that no shift is needed."""
     s = frame.spans[1:]
     largest = rng.integers(0, 3, len(s))
     row = np.arange(len(s))
@@ -155,7 +164,9 @@ def low_picture(frame, rng):
     frame.spans["y"] &= 511
 
 
-#: feature: (what makes it go, what goes with it beside the half vector, which always does).
+#: {feature: (change to a frame that removes the need for the feature, further features that such a
+#: frame does not need)}. `constant_half_vector` is in no set: no single frame needs a writable half
+#: vector.
 ALONE = {
     "specular": (
         dull,
@@ -193,65 +204,72 @@ ALONE = {
 
 
 def without(feature: str, frame: Frame):
-    """The full configuration without that one feature, as `prune` would leave it out."""
+    """The default configuration with one `feature` pruned, as `prune` does it for `frame`."""
     pruned, _ = pruning.prune(frame)
     return dataclasses.replace(C, name="alone", **{feature: getattr(pruned, feature)})
 
 
-# -- trials ----------------------------------------------------------------------------------------
+# -- configuration tests ---------------------------------------------------------------------------
 
 
-class Trial:
-    """`jobs` on the build `config`, each with all that must come of it."""
+class ConfigurationTest:
+    """Simulates `jobs` on the build `config` and compares with the twin."""
 
     def __init__(self, config: Config, *jobs: Job, full: Config | None = None):
-        """full: the build whose pixels those of spans that fit must be; `config` by default."""
+        """full: the configuration of the twin that gives the expected pixels of supported spans.
+
+        By default that is `config` itself.
+        """
         self.config, self.jobs, self.full = config, jobs, full or config
 
     @functools.cached_property
     def expected(self) -> list[tuple]:
-        """Counters, spans that are not supported (bool[n]) and pixels (None: any) of each job."""
+        """(counters, unsupported, pixels) that are expected of each job.
+
+        counters: {name of a field of SimResult: value}. unsupported: bool[n], spans that need a
+        feature that the build leaves out. pixels: of the twin; None if pixels are not compared.
+        """
         latency = 3 + latencies(self.config)["pixel"]
         return [self._expected(job, latency) for job in self.jobs]
 
     def _expected(self, job: Job, latency: int) -> tuple:
         config, frame = self.config, job.frame
         words = writes(frame, config) if job.writes is None else job.writes
-        odd = pruning.unsupported_spans(frame, config)
-        other = sum(pruning.unsupported_write(*word, config) for word in words)
+        unsupported = span_guard(frame.spans, config)
+        unsupported_writes = sum(unsupported_write(*word, config) for word in words)
         counters = {
             "complete": True,
             "extra_pixels": 0,
             "latency_cycles": latency,
-            "unsupported": int(odd.sum()) + other,
+            "unsupported": int(unsupported.sum()) + unsupported_writes,
         }
-        if not odd.any():
+        if not unsupported.any():
             counters["illegal_spans"] = int(illegal_spans(frame, config).sum())
             counters["zero_normals"] = twin.zero_normals(frame, config)
         if job.stall == job.idle == 0:
             counters["cycles"] = int(frame.spans["length"].sum()) + latency - 1
-        # Where other words were written the materials are others, too.
-        return counters, odd, None if job.writes or other else twin.render(frame, self.full)
+        # Other register writes than the frame's give other materials than the twin's.
+        compared = not (job.writes or unsupported_writes)
+        return counters, unsupported, twin.render(frame, self.full) if compared else None
 
     def bench(self, rtl: Path | None = None) -> Bench:
-        """The build, of the design in `rtl`."""
+        """The whole-frame testbench of this configuration, with the design in the folder `rtl`."""
         return Bench("frame_bench", self.config, rtl=rtl, quick=True)
 
-    def model_complaint(self) -> str:
-        """Where the model of this build and that of the full one differ, "" if nowhere."""
-        for k, (_, odd, pixels) in enumerate(self.expected):
+    def model_failure(self) -> str:
+        """The first difference between the twins of this build and of the full one; "" if none."""
+        for k, (_, unsupported, pixels) in enumerate(self.expected):
             frame = self.jobs[k].frame
             if pixels is not None and self.full != self.config:
-                rows = np.flatnonzero(np.repeat(~odd, frame.spans["length"]))
-                fit = dataclasses.replace(frame, spans=frame.spans[~odd])
-                own = twin.render(fit, self.config)
-                compared = metrics.compare(_rows(pixels, rows), own)
+                rows = np.flatnonzero(np.repeat(~unsupported, frame.spans["length"]))
+                supported = dataclasses.replace(frame, spans=frame.spans[~unsupported])
+                compared = metrics.compare(_rows(pixels, rows), twin.render(supported, self.config))
                 if compared.mismatches:
                     return f"job {k}, model: {compared.first}"
         return ""
 
-    def complaint(self, bench: Bench | None = None) -> str:
-        """Run all jobs; returns what is wrong first, "" if nothing is.
+    def failure(self, bench: Bench | None = None) -> str:
+        """Simulate all jobs; returns the first failure, "" if there is none.
 
         Raises BuildError, SimulationError.
         """
@@ -259,12 +277,12 @@ class Trial:
         for k, (job, result) in enumerate(zip(self.jobs, results, strict=True)):
             if job.stop_after:
                 continue
-            counters, odd, pixels = self.expected[k]
-            for what, want in counters.items():
-                if (got := getattr(result, what)) != want:
-                    return f"job {k}: {what} {got}, expected {want}"
+            counters, unsupported, pixels = self.expected[k]
+            for name, want in counters.items():
+                if (got := getattr(result, name)) != want:
+                    return f"job {k}: {name} {got}, expected {want}"
             if pixels is not None:
-                rows = np.flatnonzero(np.repeat(~odd, job.frame.spans["length"]))
+                rows = np.flatnonzero(np.repeat(~unsupported, job.frame.spans["length"]))
                 compared = metrics.compare(_rows(pixels, rows), _rows(result.pixels, rows))
                 if compared.mismatches:
                     return f"job {k}: {compared.first}"
@@ -272,149 +290,163 @@ class Trial:
 
 
 def _rows(pixels: twin.Pixels, rows: np.ndarray) -> twin.Pixels:
+    """The pixels number `rows` (int[n]) of a stream."""
     return twin.Pixels(*(getattr(pixels, f.name)[rows] for f in dataclasses.fields(pixels)))
 
 
 def misfits(frame: Frame, seed: int) -> Frame:
-    """`frame` with one in three of each of its spans' words anything, and one in six spans a single
-    pixel of large normal, and one in six too large first, then of the size of unit ones."""
+    """`frame` with spans that a pruned build may not support.
+
+    One third of each word of the spans is replaced by a word of a frame that needs everything. One
+    span in six becomes a single pixel with a large normal. One span in six starts with a normal
+    longer than 1 that gets shorter than 1 along the span. Illegal spans are removed.
+    """
     rng = np.random.default_rng(seed)
-    out, other = dataclasses.replace(frame, spans=frame.spans.copy()), plain(seed)
+    spans, other = frame.spans.copy(), plain(seed)
     for word in ("start", "step", "material", "x", "y"):
-        rows = rng.random(len(out.spans)) < 1 / 3
-        out.spans[word][rows] = other.spans[word][rows]
-    rows = rng.random(len(out.spans)) < 1 / 6
-    out.spans["length"][rows] = 1
-    out.spans["start"][rows] = rng.integers(C.normal.min, C.normal.max + 1, (rows.sum(), 3))
-    rows = rng.random(len(out.spans)) < 1 / 6
-    longest = np.maximum(out.spans["length"][rows], 3)
-    out.spans["length"][rows] = longest
-    out.spans["start"][rows] = (0, 0, C.normal.one * 3 // 2)
-    out.spans["step"][rows] = 0
-    out.spans["step"][rows, 2] = -(C.normal.one * 3 // 4) // (longest - 1)
-    out.spans = out.spans[~illegal_spans(out, C)]
-    out.spans["last"] = False
-    out.spans["last"][-1] = True
-    return out
+        rows = rng.random(len(spans)) < 1 / 3
+        spans[word][rows] = other.spans[word][rows]
+    rows = rng.random(len(spans)) < 1 / 6
+    spans["length"][rows] = 1
+    spans["start"][rows] = rng.integers(C.normal.min, C.normal.max + 1, (rows.sum(), 3))
+    rows = rng.random(len(spans)) < 1 / 6
+    length = np.maximum(spans["length"][rows], 3)
+    spans["length"][rows] = length
+    spans["start"][rows] = (0, 0, C.normal.one * 3 // 2)
+    spans["step"][rows] = 0
+    spans["step"][rows, 2] = -(C.normal.one * 3 // 4) // (length - 1)
+    result = dataclasses.replace(frame, spans=spans)
+    result.spans = spans[~illegal_spans(result, C)]
+    result.spans["last"] = False
+    result.spans["last"][-1] = True
+    return result
 
 
 def odd_writes(frame: Frame, config: Config, seed: int) -> list[tuple[int, int]]:
-    """(address, word) of writes to everywhere, many of the words at the border of what `config`
-    supports: those of `frame`, and others."""
+    """Register writes (address, word): random words to every address, then those of `frame`.
+
+    Many of the words are at the limits of what `config` supports.
+    """
     rng = np.random.default_rng(seed)
     kind = 1 << (C.material_bits + C.weight_index_bits)
-    one, vanishes = C.exponent.one, pruning.vanishing_exponent(C)
+    one, vanishes = C.exponent.one, vanishing_exponent(C)
     values = [0, 1, 2, 3, one, one - 1, one + 1, vanishes, vanishes - 1, vanishes + 1]
     constants = (getattr(config, feature) for feature in pruning.FEATURES)
     mask = (1 << C.coefficient.bits + 1) - 1
     values += [int(v) & mask for c in constants if isinstance(c, tuple) for v in c]
     above = 1 << C.coefficient.bits + 1
-    out = []
+    random_writes = []
     for address in rng.permutation(2 * kind).tolist():
         word = rng.choice(values) if rng.random() < 0.8 else rng.integers(above)
         if rng.random() < 0.2:
             word ^= 1 << rng.integers(C.coefficient.bits)
         if rng.random() < 0.3:
             word += above * rng.integers(C.coefficient.one)
-        out.append((address, int(word)))
-    return out + writes(frame, C)
+        random_writes.append((address, int(word)))
+    return random_writes + writes(frame, C)
 
 
-def _alone(feature: str) -> Trial:
+def _alone(feature: str) -> ConfigurationTest:
     frame = plain(change=ALONE[feature][0])
     return _of(frame, without(feature, frame))
 
 
-def _of(frame: Frame, config: Config, full: Config = C) -> Trial:
-    """`frame`, which fits `config`, and then what does not."""
-    return Trial(
+def _of(frame: Frame, config: Config, full: Config = C) -> ConfigurationTest:
+    """Jobs with `frame`, which `config` supports, and jobs with spans and writes it does not."""
+    return ConfigurationTest(
         config, Job(frame), Job(frame, idle=100, stall=64, seed=SEED),
         Job(misfits(frame, SEED + 1)), Job(misfits(frame, SEED + 2), stall=100, idle=100),
         Job(frame, writes=odd_writes(frame, config, SEED)), full=full,
     )  # fmt: skip
 
 
-def _default() -> Trial:
-    frame, wild = plain(), random_frame(SEED, 300, 12)
-    for first, axes in enumerate(([1], [0, 1], [1, 2], [0, 2])):  # most of these leave the format
-        wild.spans["step"][first::50, axes] = C.normal.max
-    return Trial(
-        C, Job(frame), Job(wild), Job(frame, idle=100, stall=64, seed=SEED),
-        Job(wild, stop_after=90, stall=255), Job(wild, reset_first=True),
+def _default() -> ConfigurationTest:
+    frame, overflowing = plain(), random_frame(SEED, 300, 12)
+    for first, axes in enumerate(([1], [0, 1], [1, 2], [0, 2])):  # most leave the format
+        overflowing.spans["step"][first::50, axes] = C.normal.max
+    return ConfigurationTest(
+        C, Job(frame), Job(overflowing), Job(frame, idle=100, stall=64, seed=SEED),
+        Job(overflowing, stop_after=90, stall=255), Job(overflowing, reset_first=True),
         Job(frame, writes=odd_writes(frame, C, SEED)),
     )  # fmt: skip
 
 
-def _hold() -> Trial:
+def _hold() -> ConfigurationTest:
     config = dataclasses.replace(C, name="hold", hold_unlit=True)
-    frame, one_side = plain(), dataclasses.replace(plain(), two_sided=False)
-    return Trial(config, Job(frame), Job(one_side), Job(one_side, idle=100, stall=64, seed=SEED),
-                 full=C)  # fmt: skip
+    frame, single = plain(), dataclasses.replace(plain(), two_sided=False)
+    jobs = Job(frame), Job(single), Job(single, idle=100, stall=64, seed=SEED)
+    return ConfigurationTest(config, *jobs, full=C)
 
 
 def narrow() -> tuple[Frame, Config]:
-    """A frame that fits a build whose words are narrowed in every way, and that build."""
-    fit = plain()
+    """A frame, and a build whose words are narrowed in every possible way and that supports it."""
+    frame = plain()
     for change in (size_of_unit, still_y, gentle, few_materials, narrow_picture, low_picture):
-        change(fit, np.random.default_rng(SEED))
-    fit.spans["start"][0, 0] = C.normal.one * 3 // 4  # the span that was steep, without a step in y
+        change(frame, np.random.default_rng(SEED))
+    # The steepest span now has no step in y: its x keeps the largest component above 1/2.
+    frame.spans["start"][0, 0] = C.normal.one * 3 // 4
     names = ("constant_shift", "interpolate_y", "idle_step_bits", "idle_material_bits",
              "idle_x_bits", "idle_y_bits")  # fmt: skip
-    pruned = pruning.prune(fit)[0]
+    pruned = pruning.prune(frame)[0]
     config = dataclasses.replace(C, name="narrow", **{n: getattr(pruned, n) for n in names})
     assert all(getattr(config, n) != getattr(C, n) for n in names)
-    return fit, config
+    return frame, config
 
 
-def _single(*changes: Callable) -> Trial:
-    """One material, after `changes`, on the build pruned to it."""
+def _single(*changes: Callable) -> ConfigurationTest:
+    """A frame of one material, after `changes`, on the build that is pruned to the frame."""
     frame = plain(**{change.__name__: change for change in changes})
     frame.spans["material"] = 5
     return _of(frame, pruning.prune(frame)[0])
 
 
-def _older(technique: str, channels: int) -> Trial:
-    config = dataclasses.replace(TECHNIQUES[technique], name="older", channels=channels)
+def _intensities(technique: str, channels: int) -> ConfigurationTest:
+    """Gouraud or flat shading with 1 or 3 colour channels."""
+    config = dataclasses.replace(TECHNIQUES[technique], name="intensities", channels=channels)
     frame = random_frame(SEED, 300, 12, config=config)
     if channels == 1:
         for word in ("start", "step"):
             frame.spans[word][:, 1:] = frame.spans[word][:, :1]
-    return Trial(config, Job(frame), Job(frame, idle=100, stall=64, seed=SEED),
-                 Job(frame, stop_after=40, stall=255), Job(frame, reset_first=True))  # fmt: skip
+    return ConfigurationTest(
+        config, Job(frame), Job(frame, idle=100, stall=64, seed=SEED),
+        Job(frame, stop_after=40, stall=255), Job(frame, reset_first=True),
+    )  # fmt: skip
 
 
-#: Small scenes for methods whose spans carry other words than normals.
+#: Small scenes for methods whose spans carry further words beside the normals.
 SCENES = (("model/data/highlights.toml", (72, 24)), ("model/data/facets.toml", (96, 16)))
 
 
 def in_words_of(config: Config, frame: Frame) -> Frame:
-    """`frame`, which is in the default's words, in those of `config`, cut to fit."""
-    less = C.normal.fraction - config.normal.fraction
+    """`frame`, whose codes are in the default formats, in the narrower formats of `config`."""
+    drop = C.normal.fraction - config.normal.fraction
     spans, materials = frame.spans.copy(), dataclasses.replace(frame.materials)
     for word in ("start", "step"):
-        spans[word] >>= less
-    cut = C.coefficient.fraction - config.coefficient.fraction
+        spans[word] >>= drop
+    drop = C.coefficient.fraction - config.coefficient.fraction
     for table in ("ambient", "diffuse", "weight"):
-        setattr(materials, table, getattr(materials, table) >> cut)
-    cut = C.half_vector.fraction - config.half_vector.fraction
-    half = tuple(v >> cut for v in frame.half_vector)
+        setattr(materials, table, getattr(materials, table) >> drop)
+    drop = C.half_vector.fraction - config.half_vector.fraction
+    half = tuple(v >> drop for v in frame.half_vector)
     return dataclasses.replace(frame, spans=spans, materials=materials, half_vector=half)
 
 
-def _method(name: str) -> Trial:
+def _method(name: str) -> ConfigurationTest:
+    """The configuration `name` of the precision sweep."""
     config = CONFIGS[name]
     if config.normal_method == "quadratic_spans":
         frames = [front_end(load_scene(*scene), config).frame for scene in SCENES]
         frames.append(dataclasses.replace(frames[1], two_sided=True))
-        frames[1].spans["start"][5:9] = frames[1].spans["step"][5:9] = 0  # no direction at all
+        frames[1].spans["start"][5:9] = frames[1].spans["step"][5:9] = 0  # zero normals
     else:
         frames = [in_words_of(config, frame) for frame in (
             plain(), dataclasses.replace(plain(SEED + 1), two_sided=False))]  # fmt: skip
-    return Trial(config, *map(Job, frames), Job(frames[0], idle=100, stall=64, seed=SEED))
+    jobs = *map(Job, frames), Job(frames[0], idle=100, stall=64, seed=SEED)
+    return ConfigurationTest(config, *jobs)
 
 
-#: What there is, by name.
-TRIALS: dict[str, Callable[[], Trial]] = {
+#: {name: function that makes the configuration test}.
+CONFIGURATION_TESTS: dict[str, Callable[[], ConfigurationTest]] = {
     "default": _default,
     **{name: functools.partial(_alone, name) for name in ALONE},
     "hold_unlit": _hold,
@@ -425,7 +457,7 @@ TRIALS: dict[str, Callable[[], Trial]] = {
     "single cosine": lambda: _single(cosine_only, no_ambient),
     "single glow": lambda: _single(no_diffuse, even_weight, sharp),
     **{
-        f"{technique} {channels}": functools.partial(_older, technique, channels)
+        f"{technique} {channels}": functools.partial(_intensities, technique, channels)
         for technique in TECHNIQUES if technique != "phong" for channels in (3, 1)
     },
     **{
@@ -443,16 +475,16 @@ TRIALS: dict[str, Callable[[], Trial]] = {
 
 
 @functools.cache
-def trial(name: str) -> Trial:
-    """The trial `name` of TRIALS. Raises KeyError."""
-    return TRIALS[name]()
+def configuration_test(name: str) -> ConfigurationTest:
+    """The configuration test `name` of CONFIGURATION_TESTS, made once. Raises KeyError."""
+    return CONFIGURATION_TESTS[name]()
 
 
 # -- random scenes ---------------------------------------------------------------------------------
 
 
 def random_scene(seed: int) -> Frame:
-    """A frame with a random choice of what it needs."""
+    """A random frame that needs a random choice of features."""
     rng = np.random.default_rng(seed)
     frame = random_frame(seed, 120, 16, two_sided=bool(rng.random() < 0.5))
     for change in (dull, even_weight, no_diffuse, no_ambient, grey, one_exponent, one_weight,
@@ -464,7 +496,7 @@ def random_scene(seed: int) -> Frame:
     return frame
 
 
-def random_trial(seed: int) -> Trial:
-    """Random scene `seed` on the build pruned to it."""
+def random_configuration_test(seed: int) -> ConfigurationTest:
+    """Random scene `seed` on the build that is pruned to the scene."""
     frame = random_scene(seed)
-    return Trial(pruning.prune(frame)[0], Job(frame), full=C)
+    return ConfigurationTest(pruning.prune(frame)[0], Job(frame), full=C)

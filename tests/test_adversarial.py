@@ -12,17 +12,16 @@ from phong75.model.front.scene import bundled_scenes
 from phong75.model.spans import illegal_spans
 from phong75.model.studies import adversarial, corner_cases
 from phong75.model.studies.adversarial import FAMILIES
+from phong75.scripts import recorded
 from phong75.scripts.stability import (
     adversarial_cases,
-    error_lines,
     error_rows,
     power_row,
     scene_errors,
 )
-from phong75.sim.design import PACKAGE
 from phong75.sim.frame import corner_cases as table
+from tests.records import differences
 
-README = (PACKAGE / "README.md").read_text()
 QUICK = {"points": 512, "rounds": 60, "examples": 60, "climbs": 1}
 
 
@@ -32,8 +31,8 @@ def test_the_worst_inputs_come_out_of_the_rtl_as_found():
         assert not row.failures and row.mismatches == 0, f"{row.case}: {row.failures}"
     scenes = [table.scene_case(name) for name in bundled_scenes()]
     errors = error_rows(scene_errors(scenes, table.results(scenes)), rows)
-    for row, line in zip(errors, error_lines(errors), strict=True):
-        assert line in README, "the README's table is old: make stability"
+    for row, kept in zip(errors, recorded.figures("stability")["errors"], strict=True):
+        assert not differences(row, kept), "the record is old: make stability"
         assert 0.5 < row["adversarial_lsb"] <= row["adversarial_bound_lsb"], row
         assert row["adversarial_bound_lsb"] <= row["bound_lsb"], row
         assert row["scenes_lsb"] <= row["adversarial_lsb"], "a scene is worse than the search"
@@ -42,7 +41,8 @@ def test_the_worst_inputs_come_out_of_the_rtl_as_found():
 def test_the_rows_are_counted():
     single = ("shared edges", "powers", "long run", "large frame")
     rows = len(corner_cases.cases()) + len(FAMILIES) + len(bundled_scenes()) + len(single)
-    assert f"runs {rows} stiff and extreme cases" in README
+    kept = recorded.figures("stability")["rows"]
+    assert len(kept) == rows and all(row["verdict"] == "ok" for row in kept), "make stability"
 
 
 def test_the_worst_inputs_are_legal():
@@ -90,7 +90,6 @@ def test_the_search_sees_a_bound_that_is_too_low(monkeypatch):
 def test_the_power_alone():
     errors = adversarial.power_errors()
     assert not power_row(errors).failures
-    at_20 = next(row["max_error"] for row in errors if row["n"] == 20)
-    assert f"at n = 20 it is {at_20:.2g}," in README
+    assert errors == recorded.figures("stability")["powers"], "the record is old: make stability"
     rows = [{"n": 20, "max_error": 0.0002, "bound": 0.0001, "codes": 1}]
     assert len(power_row(rows).failures) == 2

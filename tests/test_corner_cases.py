@@ -12,6 +12,7 @@ from phong75.model.config import DEFAULT as C
 from phong75.model.front import visibility
 from phong75.model.spans import illegal_spans
 from phong75.model.studies import corner_cases
+from phong75.model.twin.core import phong_unit
 from phong75.sim import design
 from phong75.sim.build import Bench
 from phong75.sim.frame import corner_cases as table
@@ -52,7 +53,7 @@ def test_shared_edges():
 
 
 def test_shared_edges_are_seen_to_break(monkeypatch):
-    """With another rule for dots on an edge, or inexact crossings, dots are missing or double."""
+    """With another rule for edges, or inexact crossings, pixels are missing or drawn twice."""
     exact = visibility._crossing
 
     def other_rule(xa, ya, xb, yb, y):
@@ -98,8 +99,8 @@ def test_a_row_fails(what):
 def test_an_error_beyond_the_bound_fails(monkeypatch):
     """RTL and model may agree and both be wrong: the reference decides."""
     case = next(c for c in corner_cases.cases() if c.name == "normals of 2⁻²⁰")
-    shade = twin.phong_pipeline.shade
-    monkeypatch.setattr(twin.phong_pipeline, "shade", lambda *a: np.minimum(shade(*a) + 1, 255))
+    shade = phong_unit.shade
+    monkeypatch.setattr(phong_unit, "shade", lambda *a: np.minimum(shade(*a) + 1, 255))
     said = table.judge(case, [result(case.frame)]).failures
     assert any("the largest error is" in line for line in said)
 

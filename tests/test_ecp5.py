@@ -10,7 +10,7 @@ import pytest
 
 from phong75.model.config import DEFAULT as C
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.model.twin import render
 from phong75.scripts import main
 from phong75.scripts.synthesis import ecp5 as synthesis
@@ -78,7 +78,7 @@ def test_cells_of_a_module(tmp_path):
     }
     netlist.write_text(json.dumps({"modules": {"harness": {"cells": made}}}))
     found = synthesis.cells_of(netlist, "delay")
-    assert (found["lut"], found["carry"], synthesis.lut_sites(found)) == (2, 2, 6)
+    assert (found["lut"], found["carry"], synthesis.lut_cells(found)) == (2, 2, 6)
 
 
 @pytest.mark.parametrize(
@@ -106,7 +106,7 @@ def _routed(seed, mhz):
 
 def test_summary_takes_the_median_of_clamped_clocks():
     synthesis_of = {
-        "resources": {"lut": 60, "ebr": 1, "dsp": 1}, "harness": {"lut": 10}, "seconds": 2,
+        "resources": {"lut_sites": 100, "ebr": 1, "dsp": 1}, "harness": {"lut": 10}, "seconds": 2,
     }  # fmt: skip
     routed = [_routed(1, 230), _routed(2, 190), _routed(3, 220)]
     report = synthesis.summary(C, 6, synthesis_of, routed)

@@ -9,20 +9,18 @@ from phong75.model import twin
 from phong75.model.analysis import metrics
 from phong75.model.config import DEFAULT as C
 from phong75.model.front.scene import bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import front_end
-from phong75.scripts import scene_results
+from phong75.model.scene_to_frame import front_end
+from phong75.scripts import recorded, scene_results
 from phong75.sim import design
 from phong75.sim.build import Bench
-from phong75.sim.design import PACKAGE
 from phong75.sim.frame.locate import locate
 from phong75.sim.frame.run_frame import Job, simulate_jobs
-
-README = (PACKAGE / "README.md").read_text()
+from tests.records import differences
 
 
 @pytest.mark.parametrize("scene", bundled_scenes())
 def test_bundled_scene(scene):
-    """RTL = model, in the derived bound, 99.9 % rounded right, 30 frames/s, as the README says."""
+    """RTL = model, in the derived bound, 99.9 % rounded right, 30 frames/s, as recorded."""
     measured = scene_results.measure(scene)
     for size, result in zip(scene_results.SIZES, measured, strict=True):
         what, done = f"{scene} at {size}", result.simulation
@@ -33,7 +31,9 @@ def test_bundled_scene(scene):
         assert result.error["max_lsb"] <= result.bound_lsb <= 1, what
         assert result.error["correctly_rounded"] >= 0.999, what
         assert done.pixels.last.sum() == 1 and done.pixels.last[-1], what
-    assert scene_results.row(scene, measured) in README, "the README's table is old: make scenes"
+    now = scene_results.figures({scene: measured})["scenes"][scene]
+    for new, kept in zip(now, recorded.figures("scenes")["scenes"][scene], strict=True):
+        assert not differences(new, kept), "the record is old: make results"
 
 
 def test_each_dot_is_shaded_once():

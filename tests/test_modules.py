@@ -1,10 +1,9 @@
-"""Runs the cocotb testbench of every RTL module; a failure says what differs and where."""
+# SPDX-License-Identifier: MIT
+"""The cocotb tests of every RTL module, and whole frames through the RTL."""
 
 from __future__ import annotations
 
 import contextlib
-import re
-import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
@@ -12,31 +11,22 @@ import pytest
 from phong75.model.config import DEFAULT as C
 from phong75.model.config import TECHNIQUES
 from phong75.model.spans import illegal_spans
+from phong75.model.studies.random_frames import random_frame
 from phong75.model.twin import render
 from phong75.sim.build import Bench
 from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.results import read_results
 from tests.modules.benches import NAMES, ModuleBench, module_bench
-from tests.modules.frames import random_frame
 
 SEED = 75
 
 
-def outcome(results, folder) -> list[str]:
-    """The failures that cocotb wrote to `results`, each as one line; raises if no test ran."""
-    cases = ET.parse(results).getroot().findall(".//testcase")
-    assert cases, f"no cocotb test ran; see {folder / 'sim.log'}"
-    failed = [case for case in cases if case.find("failure") is not None]
-    said = re.findall(r"AssertionError: (.*)", (folder / "sim.log").read_text())
-    return [case.get("name") for case in failed] + (said if failed else [])
-
-
-def run(about: ModuleBench, folder, bench: Bench | None = None) -> None:
-    """Run the cocotb tests of `about`, in `bench` if it is not the one that `about` describes."""
-    bench = bench or Bench(about.top, about.config, about.sources)
-    with contextlib.suppress(SystemExit):  # how the runner says inside pytest that a test failed
-        bench.run(about.tests, folder, seed=SEED, extra_env=about.environment(folder, SEED))
-    failures = outcome(folder / "results.xml", folder)
-    if failures:
+def run(module: ModuleBench, folder, bench: Bench | None = None) -> None:
+    """Run the cocotb tests of `module`, in `bench` if given; fails the pytest test if one fails."""
+    bench = bench or Bench(module.top, module.config, module.sources)
+    with contextlib.suppress(SystemExit):  # inside pytest, cocotb's runner exits if a test fails
+        bench.run(module.tests, folder, seed=SEED, extra_env=module.environment(folder, SEED))
+    if failures := read_results(folder).failures:
         pytest.fail("\n".join(failures), pytrace=False)
 
 
@@ -55,15 +45,15 @@ def same_pixels(got, frame, config) -> bool:
 def test_whole_frames_in_all_regimes(technique):
     config = TECHNIQUES[technique]
     frame = random_frame(SEED, 1000, 40, config=config)
-    dot = random_frame(SEED, 1, 1, config=config)
+    pixel = random_frame(SEED, 1, 1, config=config)
     if technique != "flat":
         frame.spans["step"][::50, 1] = C.normal.max  # most of these leave the format
     illegal = int(illegal_spans(frame, config).sum())
     pixels = int(frame.spans["length"].sum())
     chances = (0, 64, 200)
-    jobs = [Job(dot)]
+    jobs = [Job(pixel)]
     jobs += [Job(frame, idle=i, stall=s, seed=SEED + i + s) for i in chances for s in chances]
-    # Broken off in the middle, with and without pixels waiting, then whole after a reset.
+    # Stopped in the middle of a frame, with and without waiting pixels; then a whole frame.
     for clocks, stall in ((700, 0), (3001, 200), (90, 255)):
         jobs += [Job(frame, stop_after=clocks, stall=stall), Job(frame, reset_first=True)]
     results = simulate_jobs(jobs, config)

@@ -1,17 +1,32 @@
+# SPDX-License-Identifier: MIT
 """A sample of mutants; `make mutate` runs them all."""
 
 import subprocess
 import sys
 
+from phong75.sim import design
 from phong75.sim.design import PACKAGE
+from tests.campaigns import mutation
+from tests.campaigns.relevant_benches import BENCHES, relevant_benches
 
 SAMPLE = 8
-#: Files of which the default configuration builds every line.
+#: Files that the default configuration builds completely.
 FILES = (
     "span_walker", "linear_interpolator", "inverse_sqrt_linear", "versine_of_cross",
     "specular_weight",
     "round_saturate", "leading_zeros", "left_shifter", "narrow_multiplier", "intensity_code",
 )  # fmt: skip
+
+
+def test_every_file_of_the_design_has_benches():
+    for file in design.sources():
+        benches = relevant_benches(file)
+        assert benches, f"no bench contains {file.stem}"
+        assert benches[0] == "default" or "default" not in benches, file.stem
+    for header in design.headers():
+        assert set(relevant_benches(header)) == set(BENCHES)
+    newton = relevant_benches(design.module_file("newton_step"))
+    assert newton[0] == "newton_step" and {"fast_inverse_2", "table_32_newton"} < set(newton)
 
 
 def mutate(*arguments):
@@ -39,3 +54,8 @@ def test_what_is_not_in_the_design_is_one_line():
         done = mutate(*arguments)
         assert done.returncode == 2 and done.stderr.count("\n") == 1
         assert done.stderr.startswith(f"Error: {says}")
+
+
+def test_the_explained_mutants_exist():
+    files = [*design.sources(), *design.headers()]
+    assert set(mutation.explained()) <= {m.key for path in files for m in mutation.mutants(path)}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 
 import numpy as np
 import pytest
@@ -10,21 +11,28 @@ import pytest
 from phong75.model import twin
 from phong75.model.analysis import metrics, pruning
 from phong75.model.config import DEFAULT as C
-from phong75.model.config import digits, levels
 from phong75.model.frame import Frame, MaterialTable
 from phong75.model.front.scene import bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import front_end
 from phong75.model.registers import writes
+from phong75.model.scene_to_frame import front_end
+from phong75.model.twin.core.register_map import unsupported_write, vanishing_exponent
 from phong75.model.twin.core.specular_power_tables import specular_power_tables
+from phong75.model.twin.pruning.constant_multiplier import (
+    constant_multiplier,
+    levels,
+    signed_digits,
+)
+from phong75.model.twin.pruning.span_guard import span_guard
 from phong75.scripts import main, prune, recorded
+from phong75.scripts.docs import tables
 from phong75.sim.build import Bench
-from phong75.sim.design import PACKAGE
 from phong75.sim.elaborate import instances
 from phong75.sim.frame.run_frame import Job, simulate_jobs
 from phong75.sim.latency import latencies
 from tests.configuration_tests import (
     ALONE,
-    Trial,
+    ConfigurationTest,
+    configuration_test,
     dull,
     grey,
     misfits,
@@ -33,9 +41,8 @@ from tests.configuration_tests import (
     one_diffuse,
     one_sided,
     plain,
+    random_configuration_test,
     random_scene,
-    random_trial,
-    trial,
 )
 
 SEED = 1975
@@ -97,13 +104,14 @@ def test_powers_of_large_exponents_vanish_below_one_half():
     """All versines from 1/2 on, at the smallest exponent that leaves the octaves out, and not one
     below it."""
     v = np.arange(C.versine.one // 2, C.versine.max + 1)
-    least = pruning.vanishing_exponent(C)
+    least = vanishing_exponent(C)
     assert not specular_power_tables(v, np.full(len(v), least), C).any()
     assert specular_power_tables(v[:1], np.array([least - C.exponent.one]), C).any()
 
 
 def test_digits_of_constants():
     """Canonical signed digits, against the definition."""
+    word = np.arange(-5, 6)
     for constant in [*range(300), 26214, 131071, 2**18 - 1, 2**17 + 1]:
         rest, count = constant, 0
         while rest:
@@ -111,8 +119,11 @@ def test_digits_of_constants():
                 digit = 2 - rest % 4
                 rest, count = rest - digit, count + 1
             rest //= 2
-        assert digits(constant) == count, constant
+        digits = signed_digits(constant)
+        assert len(digits) == count, constant
+        assert all(b - a > 1 for (_, a), (_, b) in itertools.pairwise(digits)), constant
         assert 2 ** levels(constant) >= count
+        assert constant_multiplier(word, constant).tolist() == (constant * word).tolist()
 
 
 # -- pixels ----------------------------------------------------------------------------------------
@@ -122,15 +133,15 @@ def test_digits_of_constants():
 def test_bundled_scene(scene):
     frame = front_end(load_scene(scene, SIZE)).frame
     jobs = Job(frame), Job(frame, idle=64, stall=100, seed=SEED)
-    found = Trial(pruning.prune(frame)[0], *jobs, full=C)
-    assert found.model_complaint() == found.complaint() == ""
+    test = ConfigurationTest(pruning.prune(frame)[0], *jobs, full=C)
+    assert test.model_failure() == test.failure() == ""
 
 
 @pytest.mark.parametrize("seed", range(KEPT))
 def test_random_scene(seed):
     """More of them: `make prune-random`."""
-    found = random_trial(SEED + seed)
-    assert found.model_complaint() == found.complaint() == ""
+    test = random_configuration_test(SEED + seed)
+    assert test.model_failure() == test.failure() == ""
 
 
 @pytest.mark.parametrize("method", [
@@ -166,7 +177,7 @@ def test_a_sharp_power_is_the_same_without_octaves():
     """Every versine, at the smallest exponent that leaves the octaves out."""
     without_octaves = dataclasses.replace(C, log_octaves=False)
     v = np.arange(C.versine.max + 1)
-    n = np.full(len(v), pruning.vanishing_exponent(C))
+    n = np.full(len(v), vanishing_exponent(C))
     assert np.array_equal(
         specular_power_tables(v, n, C), specular_power_tables(v, n, without_octaves)
     )
@@ -214,15 +225,15 @@ def test_what_does_not_fit_is_flagged():
 
 
 def test_spans_and_writes_that_do_not_fit_are_known():
-    """What the trials of tests/test_trials.py count in the RTL is there to be counted."""
+    """The configuration tests contain spans and writes that the builds do not support."""
     fit, config = narrow()
-    assert not pruning.unsupported_spans(fit, config).any()
-    bad = pruning.unsupported_spans(misfits(fit, SEED), config)
+    assert not span_guard(fit.spans, config).any()
+    bad = span_guard(misfits(fit, SEED).spans, config)
     assert 20 < bad.sum() < len(bad)
     for name in ("specular", "constant_exponent", "two_sided", "channels"):
-        build = trial(name)
+        build = configuration_test(name)
         words = build.jobs[-1].writes
-        flagged = sum(pruning.unsupported_write(*word, build.config) for word in words)
+        flagged = sum(unsupported_write(*word, build.config) for word in words)
         assert 0 < flagged < len(words) - 100, name
 
 
@@ -241,23 +252,21 @@ def test_latency_falls():
 # -- the table -------------------------------------------------------------------------------------
 
 
-def test_the_readme_shows_the_last_measurement_of_these_builds():
-    """The table is that of the record, and the record is of the builds of today's analysis."""
-    record = recorded.load("prune")
-    assert prune.for_readme(record) in (PACKAGE / "README.md").read_text()
+def test_the_record_is_of_the_builds_of_todays_analysis():
+    builds = recorded.figures("prune")["builds"]
     today = {case.name: case for case in prune.cases()}
-    assert [found["name"] for found in record["table"]] == list(today)
-    for found in record["table"]:
+    assert [found["name"] for found in builds] == list(today)
+    for found in builds:
         config = today[found["name"]].config
         assert found["left_out"] == prune.left_out(config), f"{found['name']}: make prune SCENE=all"
         assert found["pruned"]["latency"] == latencies(config)["pixel"] + 3
 
 
 def test_the_bars():
-    """DSP multipliers: 8 for diffuse colour, 6 for grey, none for the older techniques, and for
+    """DSP multipliers: 8 for diffuse colour, 6 for grey, none for Gouraud and flat shading, and for
     the teapot a quarter fewer than in the full design; measured, and as it is elaborated. No
     pruned build simulates slower than the full one."""
-    rows = {found["name"]: found for found in recorded.load("prune")["table"]}
+    rows = {found["name"]: found for found in recorded.figures("prune")["builds"]}
     for name, found in rows.items():
         pruned, of_full = (found[key]["simulation_clocks_per_s"] for key in ("pruned", "full"))
         assert pruned >= of_full, name
@@ -275,13 +284,15 @@ def test_the_bars():
 
 
 def test_what_was_not_measured_is_a_dash():
-    found = dict.fromkeys(prune.COLUMNS, 3) | {"constant_multipliers": 0, "constant_lut_sites": 0}
-    pruned = found | {"constant_multipliers": 2, "constant_lut_sites": 70, "dsp": 1}
+    found = dict.fromkeys(tables.PRUNING, 3) | {"lut_sites": 3, "constant_multipliers": 0}
+    found["constant_lut_cells"] = 0
+    pruned = found | {"constant_multipliers": 2, "constant_lut_cells": 70, "dsp": 1}
     pruned["gate_equivalents"] = pruned["clock_mhz"] = None
-    cells = prune.row({"name": "a", "pruned": pruned, "full": found}).strip("| ").split(" | ")
+    cells = tables.pruning_row("a", pruned, found)
     assert cells[:4] == ["a", "1 (33 %)", "2, 70", "3 (100 %)"]
-    assert len(cells) == prune.HEADER.splitlines()[1].count("|") - 1
-    assert [k for k, cell in enumerate(cells) if cell == "-"] == [6, 8]
+    header = tables.pruning([{"name": "teapot", "pruned": pruned, "full": found}]).split("\n")[0]
+    assert len(cells) == header.count("|") - 1
+    assert [k for k, cell in enumerate(cells) if cell == tables.DASH] == [6, 8]
 
 
 @pytest.mark.parametrize("wrong", ["--gates=1", "--seeds=x", "--seeds=101", "--what"])

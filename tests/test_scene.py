@@ -10,7 +10,7 @@ from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import InputError
 from phong75.model.front.camera import FILL
 from phong75.model.front.scene import MAX_TESSELLATION, Material, bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 
 MINIMAL = '[[objects]]\nshape = "sphere"\nsegments = 8\nrings = 4\n'
 
@@ -267,7 +267,7 @@ MISTAKES = {
     with_material("color = [1, 1, 1.1]"): r"materials.m.color\[2\] = 1.1 is outside \[0, 1\]",
     with_material("color = 1"): "materials.m.color = 1 is not a list of numbers",
     MINIMAL + 'material = "m"': r"objects\[0\].material = 'm' is not in \[materials\] \(.*none",
-    "[materials.a]\n" + MINIMAL + 'material = "b"': r"= 'b' is not in \[materials\] \(there: a\)",
+    "[materials.a]\n" + MINIMAL + 'material = "b"': r"= 'b' is not in \[materials\] \(known: a\)",
     "materials = 3\n" + MINIMAL: "materials = 3 is not a table",
     "".join(f"[materials.m{i}]\n" for i in range(17))
     + MINIMAL

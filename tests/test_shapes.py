@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from phong75.model.front import shapes
-from phong75.model.front.mesh import face_normals, is_closed, is_consistent, places
+from phong75.model.front.mesh import face_normals, is_closed, is_consistent, weld
 
 ALL = {
     "sphere": shapes.sphere(),
@@ -152,7 +152,7 @@ def test_normals_where_patches_close_in_a_point(control):
 def test_teapot_has_no_cracks_but_its_rims(divisions):
     mesh = shapes.teapot(divisions)
     assert is_consistent(mesh)
-    assert len(np.unique(places(mesh.vertices))) == len(mesh.vertices)
+    assert len(np.unique(weld(mesh.vertices))) == len(mesh.vertices)
     # 8 of 32 patches lose one row of triangles at the lid's tip and the bottom's middle.
     assert len(mesh.faces) == 32 * 2 * divisions**2 - 8 * divisions
     start, end = mesh.faces.reshape(-1), np.roll(mesh.faces, -1, axis=1).reshape(-1)

@@ -13,22 +13,23 @@ from phong75.model.analysis import error_budget
 from phong75.model.config import DEFAULT
 from phong75.model.frame import SPAN_DTYPE, InputError
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
 from phong75.model.quadratic_spans import MARGIN_BITS, coefficients
+from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import read_spans, write_spans
-from phong75.model.studies import charts
+from phong75.model.studies import charts, pareto
 from phong75.model.studies.methods import CONFIGS, of_width, points
 from phong75.model.twin.methods.quadratic_interpolator import quadratic_interpolator
 from phong75.model.verilog import header
 from phong75.scripts import main, recorded
+from phong75.scripts.docs import tables
 from phong75.scripts.studies import sweep
 from phong75.scripts.synthesis import clocks
 from phong75.scripts.synthesis import ecp5 as synthesis
 from phong75.sim import design
-from phong75.sim.design import PACKAGE
 from phong75.sim.elaborate import instances
 from phong75.sim.frame.methods import measure
 from phong75.sim.latency import latencies
+from tests.records import differences
 
 SMALL = (("model/data/highlights.toml", (72, 24), ""), ("model/data/facets.toml", (96, 16), ""))
 SLICE = ("width_12", "table_8_newton", "dot_first_16", "quadratic_spans_16")
@@ -137,8 +138,11 @@ def test_where_no_bound_is_derived_there_is_none():
 
 
 def test_pareto():
-    cost, error = [1, 2, 3, 3, 4, 1], [9, 5, 6, 2, 2, 9]
-    assert charts.pareto(cost, error) == [True, True, False, True, False, True]
+    points = [(1, 9), (2, 5), (3, 6), (3, 2), (4, 2), (1, 9)]
+    assert pareto.on_front(points) == [True, True, False, True, False, True]
+    assert pareto.front(points) == [(1, 9), (2, 5), (3, 2)]
+    assert pareto.on_front([(1, 2, 3), (1, 2, 4), (0, 9, 9)]) == [True, False, True]
+    assert pareto.on_front([]) == pareto.front([]) == []
 
 
 def _rows():
@@ -152,7 +156,7 @@ def _rows():
             "correctly_rounded": 1 - k / 100, "simulate_s": 0.1, "model_s": 0.1, "pixels": 100,
             "multipliers": 19, "complete": True,
             "mismatches": 0, "port_max_lsb": 0.5, "bound_lsb": None,
-            "dsp": 19 - k if k % 2 else None, "lut": 3000 if k % 2 else None,
+            "dsp": 19 - k if k % 2 else None, "lut_sites": 3000 if k % 2 else None,
             "ff": 10 if k % 2 else None, "ebr": 4 if k % 2 else None, "longest_path": None,
         })  # fmt: skip
     return rows
@@ -173,8 +177,10 @@ def test_table_and_charts(tmp_path):
     assert [row["pareto"] for row in rows] == ["1"] + ["0"] * 11
     shown = _rows()
     shown[3] |= {"rms_lsb": 0.2501, "name": "slow"}
-    shown[4] |= {"rms_lsb": 0.2500}  # not to be seen
-    assert sweep.front(shown) == "default (5 µs, 0.300 LSB), slow (5 µs, 0.250 LSB)"
+    shown[4] |= {"rms_lsb": 0.2500}  # the same to a thousandth
+    kept = sweep.figures(shown)["configurations"]
+    assert [name for name, _ in tables.front(kept)] == ["default", "slow"]
+    assert set(sweep.COLUMNS) - set(kept["slow"]) == set(sweep.UNRECORDED)
     assert rows[0]["dsp"] == rows[0]["psnr_db"] == "" and rows[1]["dsp"] == "18"
     text = "".join(ET.parse(tmp_path / "a" / "precision_time.svg").getroot().itertext())
     assert text is not None
@@ -213,7 +219,8 @@ def test_the_chart_says_which_clocks_are_stated(monkeypatch, tmp_path):
 # -- clocks that are kept --------------------------------------------------------------------------
 
 ROUTED = {
-    "clock_mhz": 150.0, "dsp": 11, "lut": 3000, "ff": 5000, "ebr": 4, "longest_path": "ram to rom",
+    "clock_mhz": 150.0, "dsp": 11, "lut_sites": 3000, "ff": 5000, "ebr": 4,
+    "longest_path": "ram to rom",
 }  # fmt: skip
 
 
@@ -239,23 +246,23 @@ def test_a_kept_clock_counts_where_its_key_is_todays(kept_clocks, monkeypatch):
     for name in ("fast_inverse_2", "fast_inverse_0"):  # of other sources, and none at all
         found = sweep.hardware(CONFIGS[name], area=False, route=False)
         assert found["clock_mhz"] == sweep.STATED_MHZ and found["clock_source"] == "stated"
-        assert found["dsp"] is found["lut"] is found["ff"] is found["ebr"] is None
-    used = {"dsp": 12, "lut": 100, "carry": 10, "lut_ram": 1, "ff": 7, "ebr": 3}
+        assert found["dsp"] is found["lut_sites"] is found["ff"] is found["ebr"] is None
+    used = {"dsp": 12, "lut": 100, "lut_sites": 124, "ff": 7, "ebr": 3}
     monkeypatch.setattr(synthesis, "synthesize", lambda *_: {"resources": used})
     found = sweep.hardware(CONFIGS["fast_inverse_2"], area=True, route=False)
-    assert (found["clock_source"], found["dsp"], found["lut"]) == ("stated", 12, 124)
+    assert (found["clock_source"], found["dsp"], found["lut_sites"]) == ("stated", 12, 124)
 
 
 def test_what_is_routed_anew_is_not_taken_from_the_record(kept_clocks, monkeypatch):
     clocks.keep("fast_inverse_1", ROUTED | {"clock_key": "fast_inverse_1 today"})
-    used = {"dsp": 12, "lut": 100, "carry": 10, "lut_ram": 1, "ff": 7, "ebr": 3}
+    used = {"dsp": 12, "lut": 100, "lut_sites": 124, "ff": 7, "ebr": 3}
     path = {"from": {"module": "ram"}, "to": {"module": "delay"}}
     report = {"resources": used, "fmax_mhz": {"median": 199.5}, "seeds": [{"critical_path": path}]}
     monkeypatch.setattr(synthesis, "run", lambda *_: report)
     found = sweep.hardware(CONFIGS["fast_inverse_1"], area=False, route=True)
     assert found == {
         "clock_mhz": 199.5, "clock_source": "nextpnr, grade 6, seed 1",
-        "clock_key": "fast_inverse_1 today", "dsp": 12, "lut": 124, "ff": 7, "ebr": 3,
+        "clock_key": "fast_inverse_1 today", "dsp": 12, "lut_sites": 124, "ff": 7, "ebr": 3,
         "longest_path": "ram to delay",
     }  # fmt: skip
 
@@ -264,7 +271,7 @@ def test_keeping_a_clock_leaves_the_others(kept_clocks):
     clocks.keep("fast_inverse_1", ROUTED | {"clock_key": "a", "cycles": 7})
     clocks.keep("default", ROUTED | {"clock_key": "b"})
     clocks.keep("fast_inverse_1", ROUTED | {"clock_key": "c", "clock_mhz": 151.0})
-    found = recorded.load("clocks")["configurations"]
+    found = recorded.figures("clocks")["configurations"]
     assert list(found) == ["default", "fast_inverse_1"]
     assert found["default"]["key"] == "b" and found["default"]["clock_mhz"] == 150
     assert found["fast_inverse_1"]["key"] == "c" and found["fast_inverse_1"]["clock_mhz"] == 151
@@ -272,9 +279,13 @@ def test_keeping_a_clock_leaves_the_others(kept_clocks):
 
 
 def test_a_clock_of_a_configuration_that_is_gone_goes(kept_clocks):
-    recorded.save("clocks", "", (), [], configurations={"gone": ROUTED, "fast_inverse_2": ROUTED})
+    kept = {"gone": ROUTED, "fast_inverse_2": ROUTED}
+    recorded.save("clocks", "", (), {"configurations": kept})
     clocks.keep("fast_inverse_1", ROUTED | {"clock_key": "a"})
-    assert list(recorded.load("clocks")["configurations"]) == ["fast_inverse_1", "fast_inverse_2"]
+    assert list(recorded.figures("clocks")["configurations"]) == [
+        "fast_inverse_1",
+        "fast_inverse_2",
+    ]
 
 
 def test_what_has_no_clock_is_said(monkeypatch):
@@ -287,8 +298,8 @@ def test_what_has_no_clock_is_said(monkeypatch):
         found["clock_source"] = "nextpnr, grade 6, seed 1, kept"
     assert sweep.unrouted(rows).endswith(f"--route {rows[0]['name']},{rows[1]['name']}")
     assert sweep.unrouted(rows[2:]) == ""
-    monkeypatch.setattr(sweep, "SHOWN", [found["name"] for found in rows[1:3]])
-    lines = sweep.readme(rows).split("\n")[2:]
+    monkeypatch.setattr(tables, "SHOWN", [found["name"] for found in rows[1:3]])
+    lines = tables.sweep(sweep.figures(rows)["configurations"]).split("\n")[2:]
     assert "| 200 (stated) | 5 |" in lines[0] and "| 200 | 5 |" in lines[1]
 
 
@@ -337,12 +348,13 @@ def test_the_key_has_all_modules_of_the_technology():
 
 
 def test_the_kept_clocks_are_ones_that_the_chip_allows():
-    kept = recorded.load("clocks")["configurations"]
-    assert set(kept) <= set(CONFIGS) and set(sweep.SHOWN) <= set(kept)
+    kept = recorded.figures("clocks")["configurations"]
+    assert set(kept) <= set(CONFIGS) and set(tables.SHOWN) <= set(kept)
     for name, found in kept.items():
         limit, _ = synthesis.clock_limit(found, clocks.GRADE)
         assert 50 < found["clock_mhz"] <= (limit or np.inf), name
-        assert found["dsp"] <= 40 and 0 < found["lut"] < 83640 and found["key"], name
+        logic = found.get("lut_sites") or found["lut_cells"]
+        assert found["dsp"] <= 40 and 0 < logic < 83640 and found["key"], name
 
 
 def test_failures():
@@ -354,31 +366,19 @@ def test_failures():
     assert len(said) == 2 and "derived bound 0.6" in said[0] and rows[3]["name"] in said[1]
 
 
-def test_the_readme_shows_the_record():
-    text = (PACKAGE / "README.md").read_text()
-    record = recorded.load("sweep")
-    assert record["readme"] in text, "the README's table is old: make sweep"
-    assert record["front"] in " ".join(text.split()), "the README's front is old: make sweep"
-
-
-def test_the_readme_has_the_kept_clocks():
-    kept = recorded.load("clocks")["configurations"]
-    lines = recorded.load("sweep")["readme"].split("\n")[2:]
-    for name, line in zip(sweep.SHOWN, lines, strict=True):
-        cells = [cell.strip() for cell in line.split("|")][1:-1]
-        assert cells[0] == name
-        if "stated" not in cells[5]:  # of today's design
-            kept_mhz = f"{kept[name]['clock_mhz']:.0f}"
-            assert cells[3] == str(kept[name]["lut"]) and cells[5] == kept_mhz
-    assert "stated" not in lines[0]
+def test_the_record_has_the_kept_clocks():
+    kept = recorded.figures("clocks")["configurations"]
+    found = recorded.figures("sweep")["configurations"]
+    assert set(tables.SHOWN) <= set(found) <= set(CONFIGS)
+    for name, row in found.items():
+        if row["clock_source"] != "stated":  # of today's design
+            assert all(row.get(f) == kept[name].get(f) for f in clocks.FIGURES), name
+    assert found["default"]["clock_source"] != "stated"
 
 
 def test_the_record_is_what_is_measured_now(tmp_path, monkeypatch):
     """The default configuration anew, at full size, with its kept clock."""
     monkeypatch.setattr(sweep, "measure", lambda point: measure(point, folder=tmp_path))
-    found = sweep.row(points()[0], area=False, route=False)
-    line = next(
-        line for line in recorded.load("sweep")["readme"].split("\n") if "| default" in line
-    )
-    rows = [found | {"name": name} for name in sweep.SHOWN]
-    assert sweep.readme(rows).split("\n")[2] == line, "sources changed: make sweep ROUTE=default"
+    now = sweep.figures([sweep.row(points()[0], area=False, route=False)])["configurations"]
+    kept = recorded.figures("sweep")["configurations"]["default"]
+    assert not differences(now["default"], kept, 1e-5), "make sweep ROUTE=default"

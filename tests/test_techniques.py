@@ -14,8 +14,8 @@ from phong75.model.frame import InputError
 from phong75.model.front.camera import light_frame
 from phong75.model.front.mesh import apply_matrix, face_normals
 from phong75.model.front.scene import bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import front_end
-from phong75.model.twin.phong_pipeline import shade
+from phong75.model.scene_to_frame import front_end
+from phong75.model.twin.core.phong_unit import shade
 from phong75.model.vertex_shading import exact_intensities, intensities
 from phong75.scripts import scene_results
 from phong75.sim import design
@@ -25,8 +25,8 @@ from phong75.sim.frame.run_frame import Job, simulate_jobs
 from phong75.sim.latency import latencies
 from tests.test_error import frame_of
 
-OLDER = ("gouraud", "flat")
-GOURAUD, FLAT = (TECHNIQUES[name] for name in OLDER)
+GOURAUD_AND_FLAT = ("gouraud", "flat")
+GOURAUD, FLAT = (TECHNIQUES[name] for name in GOURAUD_AND_FLAT)
 
 
 def grey(config):
@@ -53,7 +53,7 @@ def check(made, config, results):
         assert error <= error_budget.bound_lsb(front.frame, config) < 0.5001
 
 
-@pytest.mark.parametrize("technique", OLDER)
+@pytest.mark.parametrize("technique", GOURAUD_AND_FLAT)
 @pytest.mark.parametrize("scene", bundled_scenes())
 def test_bundled_scene(scene, technique):
     config = TECHNIQUES[technique]
@@ -98,7 +98,7 @@ def test_vertex_intensities_are_those_of_the_pipeline_and_within_its_bound():
 
 
 def test_gouraud_pixels_are_means_of_the_vertices():
-    """The same dots as with normals, and no intensity beyond those of the vertices."""
+    """The same pixels as with normals, and no intensity beyond those of the vertices."""
     scene = load_scene("sphere")
     phong = twin.render(front_end(scene).frame)
     made = front_end(scene, GOURAUD)
@@ -126,7 +126,7 @@ def test_flat_has_one_code_a_face():
     assert 100 < colours <= len(np.unique(np.round(faces, 12), axis=0))
 
 
-@pytest.mark.parametrize("technique", OLDER)
+@pytest.mark.parametrize("technique", GOURAUD_AND_FLAT)
 def test_rounding_before_the_ports_costs_no_more_than_the_pipeline_itself(technique):
     """Codes against the scene in float64: the twin at the vertices, s1.30 along the span."""
     config = TECHNIQUES[technique]
@@ -152,7 +152,7 @@ def test_normalized_edges_are_refused():
     [
         ("intensity_code", "1'b1 << INTENSITY_FRACTION", "0", "stage intensity_code.clamp"),
         ("gouraud_unit", ".step(values[(CHANNELS+c)", ".step(values[(2*CHANNELS-1-c)",
-         "intensity_code agree with the twin on what is interpolated here"),
+         "intensity_code agree with the twin for this pixel's interpolated vector"),
     ],
 )  # fmt: skip
 def test_a_broken_design_fails_and_is_located(tmp_path, module, old, new, says):

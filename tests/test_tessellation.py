@@ -9,17 +9,15 @@ import pytest
 from phong75.model.config import TECHNIQUES
 from phong75.model.front.interpolation import interpolate_at
 from phong75.model.front.mesh import normalize
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.model.studies import shading_artifacts, tessellation
 from phong75.model.studies.surfaces import SURFACES
 from phong75.model.twin import render
 from phong75.scripts import recorded
 from phong75.scripts.studies import artifact_runs, tessellation_runs
-from phong75.sim.design import PACKAGE
 
 RNG = np.random.default_rng(75)
 SIZE = (120, 90)
-README = (PACKAGE / "README.md").read_text()
 
 
 # -- surfaces --------------------------------------------------------------------------------------
@@ -149,7 +147,7 @@ def test_mach_bands_vanish_where_the_edge_is_none():
     counted = np.ones(80 * 80, bool)
     config = TECHNIQUES["gouraud"]
     black = shading_artifacts.mach_bands(front_end(scene, config), "gouraud", counted)
-    # From 0 to 1/2 over the square's half diagonal, 80/2.2 dots.
+    # From 0 to 1/2 over the square's half diagonal, 80/2.2 pixels.
     want = 255 * 0.5 * 2.2 / 80 * np.sin(np.radians(10))
     assert black["slope_mean"] == pytest.approx(want, rel=0.01)
     scene.objects[0].mesh.normals[:] = (0.0, 0.6, 0.8)
@@ -198,21 +196,12 @@ def test_highlights_are_looked_for_where_they_are():
     assert -(y.mean() + 0.5 - SIZE[1] / 2) * step == pytest.approx(half @ up, abs=0.05)
 
 
-# -- what the README shows -------------------------------------------------------------------------
-
-
-def test_the_readme_shows_the_record():
-    record = recorded.load("tessellation")
-    assert record["readme"] in README, "the README's table is old: make tessellation"
-    by = {(row["shape"], row["technique"]): row["highlight_rms_lsb"] for row in record["meshes"]}
-    times = [by[shape, "gouraud"] / by[shape, "phong"] for shape in SURFACES]
-    said = f"Gouraud's error in them is {min(times):.0f} to {max(times):.0f} times Phong's"
-    assert said in " ".join(README.split())
+# -- the record ------------------------------------------------------------------------------------
 
 
 def test_the_record_is_what_is_measured_now():
     """One mesh of the record anew, at full size and through the RTL."""
-    kept = [row for row in recorded.load("tessellation")["meshes"] if row["shape"] == "sphere"]
+    kept = [row for row in recorded.figures("tessellation")["meshes"] if row["shape"] == "sphere"]
     for old, new in zip(
         kept, tessellation_runs.measure("sphere", (kept[0]["level"],)), strict=True
     ):

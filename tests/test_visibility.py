@@ -1,4 +1,4 @@
-"""Camera, coverage, visibility and spans: each dot once, nearest surface, right normals."""
+"""Camera, coverage, visibility and spans: each pixel once, nearest surface, right normals."""
 
 from fractions import Fraction
 
@@ -14,9 +14,10 @@ from phong75.model.front.camera import Camera, light_frame, view_axes
 from phong75.model.front.interpolation import interpolate, interpolate_at, scan_line_weights
 from phong75.model.front.mesh import Mesh
 from phong75.model.front.scene import Material, Scene, SceneObject, bundled_scenes, load_scene
-from phong75.model.front.scene_to_spans import encode, front_end
+from phong75.model.front.scene_to_spans import encode
 from phong75.model.front.shapes import sphere
 from phong75.model.front.visibility import GRID, Segments, Triangles
+from phong75.model.scene_to_frame import front_end
 
 WIDTH, HEIGHT = 24, 20
 SMALL = (96, 72)
@@ -41,12 +42,12 @@ def cover(triangles, width=WIDTH, height=HEIGHT):
     return visibility.cover(triangles, *visibility.line_range(triangles, width, height), width)
 
 
-def count_dots(segments, width=WIDTH, height=HEIGHT):
-    """int [height, width]: how often each dot is in a segment."""
-    dots = np.zeros((height, width), int)
+def count_pixels(segments, width=WIDTH, height=HEIGHT):
+    """int [height, width]: how often each pixel is in a segment."""
+    pixels = np.zeros((height, width), int)
     for y, left, right in zip(segments.y, segments.left, segments.right, strict=True):
-        dots[y, left:right] += 1
-    return dots
+        pixels[y, left:right] += 1
+    return pixels
 
 
 def visible(triangles, width=WIDTH, height=HEIGHT):
@@ -57,26 +58,26 @@ def visible(triangles, width=WIDTH, height=HEIGHT):
 
 
 def owners(segments, width=WIDTH, height=HEIGHT):
-    """int [height, width]: the triangle of each dot, -1 without."""
+    """int [height, width]: the triangle of each pixel, -1 without."""
     picture = np.full((height, width), -1)
     for t, y, left, right in zip(
         segments.triangle, segments.y, segments.left, segments.right, strict=True
     ):
-        assert (picture[y, left:right] == -1).all(), "a dot is shaded twice"
+        assert (picture[y, left:right] == -1).all(), "a pixel is shaded twice"
         picture[y, left:right] = t
     return picture
 
 
 def edge_function_coverage(corners, width=WIDTH, height=HEIGHT):
-    """The textbook test, dot by dot in whole numbers: inside all three edges, where a dot on an
-    edge counts if the edge is a top edge or a left edge. Shares nothing with `cover`."""
+    """The textbook test in whole numbers, which shares nothing with `cover`: a pixel is covered if
+    its centre is inside all three edges, or on an edge that is a top edge or a left edge."""
     x, y = (np.floor(np.asarray(corners, float)[:, i] * GRID + 0.5).astype(object) for i in (0, 1))
     area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0])
     if area < 0:
         x, y = x[::-1], y[::-1]
-    dots = np.zeros((height, width), bool)
+    pixels = np.zeros((height, width), bool)
     if area == 0:
-        return dots
+        return pixels
     for j in range(height):
         for i in range(width):
             px, py = i * GRID + GRID // 2, j * GRID + GRID // 2
@@ -88,8 +89,8 @@ def edge_function_coverage(corners, width=WIDTH, height=HEIGHT):
                 # Positive area with y down is clockwise on the screen: left edges go up, top
                 # edges go right.
                 inside &= e > 0 or (e == 0 and (dy < 0 or (dy == 0 and dx > 0)))
-            dots[j, i] = inside
-    return dots
+            pixels[j, i] = inside
+    return pixels
 
 
 def jittered_grid(seed, step, columns, rows, jitter):
@@ -139,8 +140,8 @@ def one_triangle(corners, normals=((0, 0, 1),) * 3):
     return Mesh(np.array(corners, float), np.array([[0, 1, 2]]), np.array([normals], float))
 
 
-def dots_of(spans):
-    """Row of `spans`, x, y and step number of every dot."""
+def pixels_of(spans):
+    """Row of `spans`, x, y and step number of every pixel."""
     length = spans["length"]
     row = np.repeat(np.arange(len(spans)), length)
     k = np.arange(len(row)) - np.repeat(np.cumsum(length) - length, length)
@@ -159,7 +160,7 @@ def assert_legal(frame, config=DEFAULT):
     assert (spans["y"] >= 0).all() and (spans["y"] < frame.height).all()
     assert (spans["step"][spans["length"] == 1] == 0).all()
     place = spans["y"].astype(np.int64) * frame.width + spans["x"]
-    assert (np.diff(place) >= spans["length"][:-1]).all(), "out of order, or a dot twice"
+    assert (np.diff(place) >= spans["length"][:-1]).all(), "out of order, or a pixel twice"
     assert not spans["last"][:-1].any() and (len(spans) == 0 or spans["last"][-1])
 
 
@@ -244,10 +245,10 @@ def test_weights_are_those_of_the_plane_also_in_slivers(seed, breadth):
 @settings(max_examples=100, deadline=None)
 @given(seeds, st.sampled_from([0.5, 0.25, 1 / 64, 1 / GRID]))
 def test_coverage_is_the_top_left_rule(seed, snap):
-    """Vertices on multiples of 1/2 pixel put many dots exactly on edges and vertices."""
+    """Vertices on multiples of 1/2 pixel put many pixels exactly on edges and vertices."""
     rng = np.random.default_rng(seed)
     corners = np.floor(rng.uniform(-4, 28, (3, 2)) / snap) * snap
-    got = count_dots(cover(screen_triangles([corners])))
+    got = count_pixels(cover(screen_triangles([corners])))
     assert np.array_equal(got, edge_function_coverage(corners))
 
 
@@ -257,7 +258,7 @@ def test_a_mesh_has_no_gap_and_no_dot_twice(seed, jitter):
     corners = jittered_grid(seed, 5, 4, 3, jitter)
     expected = np.zeros((HEIGHT, WIDTH), int)
     expected[:15, :20] = 1
-    assert np.array_equal(count_dots(cover(screen_triangles(corners))), expected)
+    assert np.array_equal(count_pixels(cover(screen_triangles(corners))), expected)
 
 
 @settings(max_examples=200, deadline=None)
@@ -269,11 +270,11 @@ def test_a_turned_mesh_covers_what_its_outline_covers(seed, angle, scale):
     def place(p):
         return np.asarray(p, float) @ turn.T * scale + (12.3, 9.1)
 
-    dots = count_dots(cover(screen_triangles(place(corners))))
-    assert dots.max() <= 1
+    pixels = count_pixels(cover(screen_triangles(place(corners))))
+    assert pixels.max() <= 1
     outline = [(-10, -7.5), (10, -7.5), (10, 7.5), (-10, 7.5)]
     # The inner points of the outline's edges are snapped on their own, so that the edges of the
-    # mesh bend by a grid step: compare dots that are clear of the outline.
+    # mesh bend by a grid step: compare pixels that are clear of the outline.
     j, i = np.mgrid[:HEIGHT, :WIDTH]
     inside = np.ones((HEIGHT, WIDTH), bool)
     clear = np.ones((HEIGHT, WIDTH), bool)
@@ -282,7 +283,7 @@ def test_a_turned_mesh_covers_what_its_outline_covers(seed, angle, scale):
         side = edge[0] * (j + 0.5 - a[1]) - edge[1] * (i + 0.5 - a[0])
         inside &= side > 0
         clear &= np.abs(side) > 3 / GRID
-    assert np.array_equal(dots[clear], inside[clear].astype(int))
+    assert np.array_equal(pixels[clear], inside[clear].astype(int))
 
 
 @settings(max_examples=100, deadline=None)
@@ -294,13 +295,13 @@ def test_a_fan_round_a_pixel_centre_covers_it_once(seed):
     angles = np.unique(np.append(angles, [0.0, np.pi / 2, np.pi, 3 * np.pi / 2]))
     rim = centre + 6 * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     corners = [(centre, a, b) for a, b in zip(rim, np.roll(rim, -1, axis=0), strict=True)]
-    dots = count_dots(cover(screen_triangles(corners)))
-    assert dots.max() == 1 and dots[7, 8] == 1
+    pixels = count_pixels(cover(screen_triangles(corners)))
+    assert pixels.max() == 1 and pixels[7, 8] == 1
 
 
 def test_parts_off_the_screen_are_cut():
-    dots = count_dots(cover(screen_triangles([[(-900, -900), (5000, -10), (-10, 5000)]])))
-    assert (dots == 1).all()
+    pixels = count_pixels(cover(screen_triangles([[(-900, -900), (5000, -10), (-10, 5000)]])))
+    assert (pixels == 1).all()
     assert len(cover(screen_triangles([[(30, 1), (40, 1), (35, 9)]]))) == 0
     assert len(cover(screen_triangles([[(1, -30), (9, -30), (5, -20)]]))) == 0
 
@@ -326,10 +327,10 @@ def test_the_nearest_triangle_owns_each_dot_also_where_they_penetrate(seed, coun
 
     best = np.full((HEIGHT, WIDTH, count), np.inf)
     for t in range(count):
-        dots = edge_function_coverage(corners[t])
-        j, i = np.nonzero(dots)
+        pixels = edge_function_coverage(corners[t])
+        j, i = np.nonzero(pixels)
         a = np.c_[np.floor(corners[t] * GRID + 0.5) / GRID, np.ones(3)]
-        if dots.any():
+        if pixels.any():
             best[j, i, t] = np.c_[i + 0.5, j + 0.5, np.ones(len(i))] @ np.linalg.solve(a, depth[t])
     nearest = np.where(np.isfinite(best.min(axis=2)), best.argmin(axis=2), -1)
     ranked = np.sort(best, axis=2)
@@ -358,18 +359,18 @@ def test_segments_that_meet_nobody_need_no_depth(monkeypatch):
     """The front of a convex body is resolved by whole segments: they touch, but do not overlap."""
 
     def per_dot(*_):
-        raise AssertionError("dots were compared")
+        raise AssertionError("pixels were compared")
 
     monkeypatch.setattr(visibility, "_nearest_runs", per_dot)
     assert len(front_end(load_scene("sphere", SMALL)).frame.spans) > 1000
 
 
-@pytest.mark.parametrize("strips, dots", [(1, 1), (40, 300), (10_000, 500)])
-def test_blocks_do_not_show(monkeypatch, strips, dots):
+@pytest.mark.parametrize("strips, pixels", [(1, 1), (40, 300), (10_000, 500)])
+def test_blocks_do_not_show(monkeypatch, strips, pixels):
     scene = load_scene("still_life", SMALL)
     whole = front_end(scene)
     monkeypatch.setattr(visibility, "BLOCK_STRIPS", strips)
-    monkeypatch.setattr(visibility, "BLOCK_DOTS", dots)
+    monkeypatch.setattr(visibility, "BLOCK_PIXELS", pixels)
     assert np.array_equal(front_end(scene).frame.spans, whole.frame.spans)
 
 
@@ -439,7 +440,7 @@ def test_view_axes_of_parallel_vectors():
 
 
 def true_normals(scene, x, y):
-    """Normals, in the light frame, of a unit sphere at the origin at dots of an orthographic
+    """Normals, in the light frame, of a unit sphere at the origin at pixels of an orthographic
     picture; NaN beside it."""
     scale = scene.camera.height / scene.height
     px = (x + 0.5 - scene.width / 2) * scale
@@ -463,7 +464,7 @@ def test_normals_of_a_sphere_from_scene_to_span(interpolation):
         interpolation=interpolation,
     )
     made = front_end(scene)
-    row, x, y, k = dots_of(made.frame.spans)
+    row, x, y, k = pixels_of(made.frame.spans)
     normal = made.exact.start[row] + k[:, None] * made.exact.step[row]
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     true = true_normals(scene, x, y)
@@ -506,7 +507,7 @@ def test_encoded_spans_stay_inside_the_format(normal, seed):
     assert np.abs(normal.real(step) - real).max() <= 1.5 * normal.lsb
 
 
-def test_a_step_of_two_becomes_single_dots():
+def test_a_step_of_two_becomes_single_pixels():
     triangles = Triangles(
         np.array([[0, 0, 2]]) * GRID + GRID // 2,
         np.array([[0, 2, 2]]) * GRID + GRID // 2,
@@ -547,10 +548,10 @@ def test_triangles_through_the_eye_plane_are_cut_at_it():
     camera = face_on(projection="perspective", distance=0.0, fov=60.0, near=1e-3)
     made = front_end(picture([floor], camera))
     assert_legal(made.frame)
-    _, x, y, _ = dots_of(made.frame.spans)
-    dots = np.zeros((HEIGHT, WIDTH), int)
-    np.add.at(dots, (y, x), 1)
-    assert (dots[: HEIGHT // 2] == 0).all() and (dots[HEIGHT // 2 :] == 1).all()
+    _, x, y, _ = pixels_of(made.frame.spans)
+    pixels = np.zeros((HEIGHT, WIDTH), int)
+    np.add.at(pixels, (y, x), 1)
+    assert (pixels[: HEIGHT // 2] == 0).all() and (pixels[HEIGHT // 2 :] == 1).all()
 
 
 def test_what_is_nearer_than_the_near_plane_is_cut_off():

@@ -1,10 +1,13 @@
-"""The error budget: how far the hardware's S can be from eq. (3), derived stage by stage.
+# SPDX-License-Identifier: MIT
+"""Error budget: bound of the difference between the hardware's S and eq. (3), derived by stage.
 
-Every bound follows from the formats, the tables' segments and the integers at the ports; nothing
-is measured. `tests/test_error.py` holds the twin to each stage's bound and to the whole.
+Every bound follows from the formats, the segments of the tables and the integers at the ports.
+Nothing is measured. tests/test_error.py compares the twin with the bound of each stage and with the
+bound of the whole.
 
-Notation: an error is absolute unless called relative; |h| = 1 + eta; w = (hz Yn, hz Xn - hx Zn) is
-the normal across the half vector, so that v = 1 - cos(s) = 2 |w|**2.
+Notation: errors are absolute unless called relative. |h| = 1 + eta. w = (hz Yn, hz Xn - hx Zn) are
+the components of the cross product of the unit normal and the half vector h, so that the versine is
+v = 1 - cos(s) = 2 |w|**2.
 """
 
 from __future__ import annotations
@@ -13,6 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from phong75.model.arrays import ArrayLike, Ints, Reals
 from phong75.model.config import DEFAULT, Config, Format
 from phong75.model.frame import Frame
 from phong75.model.quadratic_spans import MARGIN_BITS
@@ -20,7 +24,7 @@ from phong75.model.quadratic_spans import MARGIN_BITS
 
 @dataclass(frozen=True)
 class Row:
-    """One line of the budget: where, how much, and why."""
+    """One line of the budget: the stage, the bound and its reason."""
 
     stage: str
     bound: float
@@ -28,26 +32,32 @@ class Row:
 
 
 def _round(fmt: Format) -> float:
-    """Rounding to `fmt`, or clamping 1.0 to its largest code: half an LSB, or one at 1.0."""
+    """Largest error of rounding to `fmt`: half an LSB.
+
+    The value 1.0 may be clamped to the largest code, which is an error of a whole LSB; the callers
+    account for it where it matters.
+    """
     return fmt.lsb / 2
 
 
 def direction(config: Config) -> float:
-    """Angle (radians) between the interpolated normal and its mantissas.
+    """Angle, radians, between the interpolated normal and the vector of its mantissas.
 
-    Half an LSB in each component; the longest component is at least 1/2. (A component clamped
-    below 1 loses up to one LSB, but then it is twice as long.)
+    Each component is rounded by at most half an LSB, and the longest component is at least 1/2. A
+    component that is clamped below 1 loses up to one LSB, but is then twice as long.
     """
     return np.sqrt(3) * _round(config.mantissa) / 0.5
 
 
-def lines(config: Config) -> float:
-    """Relative error of `inverse_sqrt_linear` against 1/sqrt of its own operand.
+def inverse_sqrt_linear(config: Config) -> float:
+    """Relative error of `inverse_sqrt_linear` against 1/sqrt of its rounded operand.
 
-    Straight lines moved halfway: h**2/16 f''; f''/f = 3/(4 x**2), the worst of each octave at its
-    left end, where h/x is 2**-root_index_bits. Then half a unit of the value, half a unit of the
-    slope, the cut of the product (slopes are 8 times finer than values), and the final rounding
-    or, at 1, the clamp by one LSB; those against the smallest root, 1/2.
+    Lines: a chord moved by half its largest error has the error h**2/16 f'', h the length of the
+    segment. f''/f = 3/(4 x**2) is largest at the left end of an octave, where
+    h/x = 2**-root_index_bits.
+    Words, relative to the smallest root, 1/2: half a unit of the value; half a unit of the slope
+    and the truncated product (slopes are 8 times finer than values); the final rounding or, at 1,
+    the clamp by one LSB.
     """
     h = 2.0**-config.root_index_bits
     value = 2.0**-config.root_value_bits
@@ -55,12 +65,13 @@ def lines(config: Config) -> float:
     return line + (value / 2 + value / 16 + value / 8 + _round(config.root)) / 0.5
 
 
-def parabolas(config: Config) -> float:
-    """Relative error of `inverse_sqrt_quadratic` against 1/sqrt of its own operand.
+def inverse_sqrt_quadratic(config: Config) -> float:
+    """Relative error of `inverse_sqrt_quadratic` against 1/sqrt of its rounded operand.
 
-    Through Chebyshev's points: h**3/192 f'''; |f'''|/f = 15/(8 x**3), its worst in the segment
-    against the smallest f there, sqrt(1 + h/x) less. Half a unit of the value, and of slope and
-    curve (8 times finer), the cuts of two products, and the final rounding.
+    Parabolas through Chebyshev's points: the error is h**3/192 f'''. |f'''|/f = 15/(8 x**3); the
+    largest f''' of a segment is divided by the smallest f, which is smaller by sqrt(1 + h/x).
+    Words: half a unit of the value, of the slope and of the curvature (both 8 times finer), two
+    truncated products, and the final rounding.
     """
     h = 2.0**-config.quadratic_index_bits
     value = 2.0**-config.quadratic_value_bits
@@ -68,20 +79,24 @@ def parabolas(config: Config) -> float:
     return curve + (value / 2 + 2 * value / 16 + 2 * value / 8 + _round(config.root)) / 0.5
 
 
-def start(config: Config) -> float:
+def inverse_sqrt_start(config: Config) -> float:
     """Relative error of the first estimate of `inverse_sqrt_iterated`.
 
-    Table: half the range of a segment against its lower end, (sqrt(1 + h/x) - 1)/2, the worst at
-    the left end of an octave, and rounding. Magic: the estimate is a line a - b x in each of three
-    pieces (x = 1 to 2; from 2 to where the result's exponent falls; to 4), so that its product with
-    sqrt(x) is at its worst at the ends or at x = a/(3 b); and the cut to the word.
+    Table of constants: half the range of f in a segment relative to its lower end,
+    (sqrt(1 + h/x) - 1)/2, largest at the left end of an octave; and rounding.
+    Fast inverse square root: the estimate is a line a - b x in each of three pieces: x from 1 to 2;
+    from 2 to the point where the exponent of the result falls; from there to 4. Its product with
+    sqrt(x) has its extremes at the ends of a piece or at x = a/(3 b). Then the truncation to the
+    word.
     """
     if config.root_method == "table":
         return (np.sqrt(1 + 2.0**-config.start_index_bits) - 1) / 2 + _round(config.root) / 0.5
-    constant = (0x5F3759DF - 127 * 2**22 - 125 * 2**23) / 2**23  # 1.93: 2 + log2 of the result
-    fall = 4 * (constant - 1)  # constant - log/2 falls below 1, log = x/2
-    # Result for log (the number read from x): 2**(i - 2) (1 + constant - log/2 - i), i = 1 or 0.
-    pieces = (  # x from, to; a, b
+    # The bits of a float32 x, read as a number, are log, a piecewise linear log2(x). The constant,
+    # 1.93, minus log/2 gives the result in the same form, with an offset of 2:
+    # result = 2**(i - 2) (1 + constant - log/2 - i), i = 1 or 0.
+    constant = (0x5F3759DF - 127 * 2**22 - 125 * 2**23) / 2**23
+    fall = 4 * (constant - 1)  # x at which constant - log/2 falls below 1; log = x/2 there
+    pieces = (  # x from, x to, a, b
         (1.0, 2.0, (constant + 0.5) / 2, 0.25),  # log = x - 1, i = 1
         (2.0, fall, constant / 2, 0.125),  # log = x/2, i = 1
         (fall, 4.0, (1 + constant) / 4, 0.0625),  # i = 0
@@ -93,48 +108,49 @@ def start(config: Config) -> float:
     return worst + config.root.lsb / 0.48
 
 
-def newton(error: float, config: Config) -> float:
-    """Relative error after `newton_step` from an estimate of relative error `error`.
+def newton_step(error: float, config: Config) -> float:
+    """Relative error after `newton_step`, from an estimate y of relative error d = `error`.
 
-    y (1 + e/2), e = 1 - x y**2 = -2 d - d**2 with d the estimate's error, leaves 3/2 d**2 + d**3/2.
-    Half of what is wrong with e: x cut, y**2 rounded (y is 0.48 or more), e itself cut and one
-    unit too small. Then the final rounding, or the clamp at 1.
+    The step is y (1 + e/2) with e = 1 - x y**2 = -2 d - d**2. It leaves the relative error
+    3/2 d**2 + d**3/2. The error of e counts half: x is truncated, y**2 is rounded (y is at least
+    0.48), e itself is truncated and one unit too small. Then the final rounding, or the clamp at 1.
     """
-    x_cut = 2.0 ** -(config.root.bits - 2)
-    wrong = x_cut + _round(config.root) / 0.48**2 + 2 * 2.0 ** -(config.root.bits + 1)
-    return 1.5 * error**2 + 0.5 * error**3 + wrong * (1 + error) ** 2 / 2 + config.root.lsb / 0.5
+    x_truncation = 2.0 ** -(config.root.bits - 2)
+    e_error = x_truncation + _round(config.root) / 0.48**2 + 2 * 2.0 ** -(config.root.bits + 1)
+    return 1.5 * error**2 + 0.5 * error**3 + e_error * (1 + error) ** 2 / 2 + config.root.lsb / 0.5
 
 
-def inverse_sqrt_linear(config: Config) -> float:
-    """Relative error of 1/sqrt of its own operand, by the method of `config`."""
+def inverse_sqrt(config: Config) -> float:
+    """Relative error of 1/sqrt of the rounded operand, by the method `config.root_method`."""
     if config.root_method == "lines":
-        return lines(config)
+        return inverse_sqrt_linear(config)
     if config.root_method == "quadratic":
-        return parabolas(config)
-    error = start(config)
+        return inverse_sqrt_quadratic(config)
+    error = inverse_sqrt_start(config)
     for _ in range(config.root_newton_steps):
-        error = newton(error, config)
+        error = newton_step(error, config)
     return error
 
 
 def root_operand(config: Config) -> float:
-    """Relative error of the root that comes from cutting |m|**2, 1 or more, to its operand."""
+    """Relative error of the root from truncating |m|**2 (at least 1) to the operand's format."""
     return config.root_operand.lsb / 2
 
 
 def length(config: Config) -> float:
-    """Relative error of the length of the unit normal, before it is rounded."""
-    return inverse_sqrt_linear(config) + root_operand(config)
+    """Relative error of the length of the unit normal before its components are rounded."""
+    return inverse_sqrt(config) + root_operand(config)
 
 
 def squares(frame: Frame, config: Config) -> float | None:
-    """`quadratic_spans`: the largest error of an interpolated square anywhere along the spans of
-    `frame`, against the exact |N|**2 there. None where it is not bounded or means nothing.
+    """Relative error of the interpolated squares of `quadratic_spans`, over all spans of `frame`.
 
-    The three words are rounded by half a unit each: after k steps 1 + k + k (k - 1)/2 of it. Over
-    a span, at its last pixel against its smallest |N|**2, which is where N comes nearest to 0. Not
-    bounded: |N|**2 leaves its word (convex: at an end), or may be so wrong that the other square
-    could pass for more than |N|**2 in spite of its margin.
+    A square is computed from three words, each rounded by at most half an LSB. After k steps the
+    error is at most 1 + k + k (k - 1)/2 half LSBs. The bound of a span is this error at the last
+    pixel, relative to the smallest |N|**2 of the span.
+    Returns None if there is no bound: |N|**2 may leave its word (it is convex along the span, so
+    its maximum is at an end), or the error may exceed the margin that keeps the cross square below
+    |N|**2 (`MARGIN_BITS`).
     """
     spans = frame.spans[frame.spans["length"] > 0]
     start, step = (config.normal.real(spans[name]) for name in ("start", "step"))
@@ -142,7 +158,7 @@ def squares(frame: Frame, config: Config) -> float | None:
     bend = (step**2).sum(axis=1)
     nearest = np.clip(-(start * step).sum(axis=1) / np.where(bend > 0, bend, 1), 0, last)
 
-    def square(k):
+    def square(k: Reals) -> Reals:
         return ((start + k[:, None] * step) ** 2).sum(axis=1)
 
     error = (1 + last + last * (last - 1) / 2) * config.squared.lsb / 2
@@ -153,17 +169,16 @@ def squares(frame: Frame, config: Config) -> float | None:
 
 
 def root_of_square(square: float, config: Config) -> float:
-    """Relative error of 1/|N| by `quadratic_spans`: the method's own, and that of |N|**2 (relative,
-    `square`)."""
+    """Relative error of 1/|N| by `quadratic_spans`; square: relative error of |N|**2."""
     return (1 + length(config)) / np.sqrt(1 - square) - 1
 
 
 def cosine(config: Config, square: float = 0.0) -> float:
-    """Error of cos(i) = Zn: direction, length, and rounding or, at 1, the clamp by one LSB.
+    """Error of cos(i) = Zn: direction, length, and the final rounding or, at 1, the clamp.
 
-    By `quadratic_spans`, Zn is aligned to a word below 2 and |N| to [1, 2): half an LSB of it by
-    the largest root, 1, or, where it is clamped, a whole one, and what |N| may be too
-    small by, by the smallest, 1/2. square: see `squares`.
+    `quadratic_spans` aligns Zn to a word below 2 and |N| to [1, 2). The error is then half an LSB
+    of this word times the largest root, 1; or, where Zn is clamped, a whole LSB plus the possible
+    shortfall of |N|, times the smallest root, 1/2. square: see `squares`.
     """
     if config.normal_method == "quadratic_spans":
         word = config.quadratic_mantissa.lsb
@@ -173,62 +188,69 @@ def cosine(config: Config, square: float = 0.0) -> float:
     return direction(config) + length(config) + config.cosine.lsb
 
 
-def across(half_vector, config: Config) -> tuple[float, float]:
-    """Error of w: (relative, absolute) parts.
+def half_vector_cross(half_vector: ArrayLike, config: Config) -> tuple[float, float]:
+    """Error of w as two parts (relative, absolute); half_vector: its codes (hx, hz).
 
-    Relative: length of the unit normal, and |h|. Absolute, by `dot_first`: the direction, the parts
-    of a mantissa (1/2 or longer) rounded with one bit less, and rounded again once scaled. Else:
-    the direction (the map N -> w has norm |h|), the rounded components of N (one of them may be
-    clamped at 1 by a whole LSB), and the rounding of the two components of w.
+    Relative: the length of the unit normal, and |h| - 1.
+    Absolute, for `dot_first`: the direction; the components of the cross product of a mantissa (1/2
+    or longer), which are rounded to one bit less; and their rounding after the scale.
+    Absolute, else: the direction (the map N -> w has the norm |h|); the rounded components of N,
+    one of which may be clamped at 1 by a whole LSB; and the rounding of the two components of w.
     """
     h = config.half_vector.real(half_vector)
     norm = float(np.hypot(*h))
     hx, hz = np.abs(h)
     half = _round(config.unit)
     if config.normal_method == "dot_first":
-        parts = np.sqrt(2) * (config.mantissa.lsb / 0.5 + half)
-        return length(config) + abs(norm - 1), float(norm * direction(config) + parts)
+        rounding = np.sqrt(2) * (config.mantissa.lsb / 0.5 + half)
+        return length(config) + abs(norm - 1), float(norm * direction(config) + rounding)
     components = half * max(np.hypot(2 * hz, hx + hz), np.hypot(hz, hx + hz + max(hx, hz)))
     absolute = norm * direction(config) + components + np.sqrt(2) * half
     return length(config) + abs(norm - 1), float(absolute)
 
 
-def quotient(v, config: Config, square: float):
-    """Error of v (float array, 0 to 1) = 2 |N x h|**2/|N|**2 by `quadratic_spans`; square: see
-    `squares`.
+def quadratic_versine(v: ArrayLike, config: Config, square: float) -> Reals:
+    """Error of the versine v = 2 C/|N|**2 (float array, 0 to 1) by `quadratic_spans`.
 
-    Relative: the margin and the error of |N|**2. Absolute: the error of the other square. Then the
-    reciprocal: twice the error of the root, and half a unit against 1/4 or more. The cut of the
-    other square: relative where its top bit is set, absolute where it was shifted by all of 15.
-    The cut of the product, and rounding or, at 1, the clamp by one LSB.
+    C: the cross square (see `quadratic_spans`). square: see `squares`. The terms, for q = v/2:
+
+    - the quotient of the squares: relative, the margin and the error of |N|**2; absolute, the error
+      of C;
+    - the reciprocal of |N|**2: twice the error of the root, and half a unit relative to 1/4;
+    - the truncation of C: relative where its top bit is set, absolute where the shift is
+      limited to 15;
+    - the truncation of the product; and the final rounding or, at 1, the clamp by one LSB.
     """
     q = np.asarray(v) / 2
-    wrong = ((2.0**-MARGIN_BITS + square) * q + square) / (1 - square)
+    q_error = ((2.0**-MARGIN_BITS + square) * q + square) / (1 - square)
     reciprocal = (1 + length(config)) ** 2 - 1 + 4 * _round(config.root)
     fraction = config.quadratic_mantissa.bits - 2
-    cut = (1 + reciprocal) * (2.0 ** -(fraction + 1) * (q + wrong) + 2.0 ** -(fraction + 15))
+    truncation = 2.0 ** -(fraction + 1) * (q + q_error) + 2.0 ** -(fraction + 15)
+    truncation = (1 + reciprocal) * truncation
     product = 2.0 ** -(fraction + config.root.fraction)
-    return 2 * (wrong + (q + wrong) * reciprocal + cut + product) + config.versine.lsb
+    total = q_error + (q + q_error) * reciprocal + truncation + product
+    return 2 * total + config.versine.lsb
 
 
-def versine(v, half_vector, config: Config, square: float = 0.0):
-    """Error of v (float array, 0 to 1) = 2 |w|**2: twice the growth of the square, and rounding.
+def versine(v: ArrayLike, half_vector: ArrayLike, config: Config, square: float = 0.0) -> Reals:
+    """Error of the versine v = 2 |w|**2 (float array, 0 to 1).
 
-    square: by `quadratic_spans`, see `squares`.
+    An error dw of |w| changes |w|**2 by 2 |w| dw + dw**2; then v is rounded. half_vector: codes
+    (hx, hz). square: for `quadratic_spans`, see `squares`.
     """
     if config.normal_method == "quadratic_spans":
-        return quotient(v, config, square)
-    relative, absolute = across(half_vector, config)
+        return quadratic_versine(v, config, square)
+    relative, absolute = half_vector_cross(half_vector, config)
     w = np.sqrt(np.asarray(v) / 2)
     dw = relative * w + absolute
     return 2 * (2 * w * dw + dw**2) + _round(config.versine)
 
 
-def squaring(n: int, config: Config) -> float:
-    """Error of `specular_power_squaring` against (1 - v)**n of its own operands, n whole.
+def specular_power_squaring(n: int, config: Config) -> float:
+    """Error of `specular_power_squaring` against (1 - v)**n of its operands; n must be whole.
 
-    cos(s) is rounded, or at 1 clamped by one LSB; a square doubles the error and is rounded. A
-    product of two words of at most 1 has at most the sum of their errors, and is rounded.
+    cos(s) is rounded or, at 1, clamped by one LSB. Squaring doubles the error and adds a rounding.
+    The product of two words of at most 1 has at most the sum of their errors, and is rounded.
     """
     half = _round(config.power)
     base, total, factors = config.power.lsb, 0.0, 0
@@ -241,59 +263,74 @@ def squaring(n: int, config: Config) -> float:
 
 
 def specular_power_tables(n: float, config: Config) -> float:
-    """Error of cos(s)**n against (1 - v)**n of its own operands, by the method of `config`.
+    """Error of `specular_power_tables` against (1 - v)**n of its operands.
 
-    By tables: with x = n * -log2(cos s), an error dx changes the power by at most 2**-x ln 2 dx.
-    log: straight lines (the first is clipped at 0: no halving), half a unit of value and of slope,
-    the cut of the product. Mantissa of the log: cut to `log_mantissa_bits`, relative, x 2**-x ln 2
-    is at most 1/e. x: cut, but the table of 2**-f is centred on the cut. exp: straight lines, half
-    a unit of value and slope, the cuts of the product and of the shift. Then rounding or, at 1,
-    the clamp by one LSB.
+    With x = n * -log2(cos s), an error dx changes the power by at most 2**-x ln 2 dx. The terms:
+
+    - logarithm: chords (not moved, because the first one must not go below 0), half a unit of value
+      and of slope, the truncated product;
+    - mantissa of the logarithm: truncated to `log_mantissa_bits`, a relative error of x, and
+      x 2**-x ln 2 is at most 1/e;
+    - x: truncated; the table of 2**-f is centred on the truncation, which halves this error;
+    - exponential: moved chords, half a unit of value and of slope, the truncated product and shift;
+    - the final rounding or, at 1, the clamp by one LSB.
     """
-    if config.power_method == "squaring":
-        return squaring(int(n), config)
     if n == 1:
         return config.power.lsb
     c = np.linspace(0.5, 1, 4097)
     h = 2.0 ** -(config.log_index_bits + 1)
     unit = config.log_value.lsb
     log_error = h**2 / 8 / np.log(2) / c[:-1] ** 2 + unit / 2 + unit / 2 + unit
-    log_part = float(np.max(c[1:] ** n * n * np.log(2) * log_error))
-    mantissa_part = 2.0 ** -(config.log_mantissa_bits - 1) / np.e
-    cut_part = np.log(2) * config.power_log.lsb / 2
+    log_term = float(np.max(c[1:] ** n * n * np.log(2) * log_error))
+    mantissa_term = 2.0 ** -(config.log_mantissa_bits - 1) / np.e
+    x_term = np.log(2) * config.power_log.lsb / 2
     unit, h = config.exp_value.lsb, 2.0**-config.exp_index_bits
-    exp_part = np.log(2) ** 2 * h**2 / 16 + unit / 2 + unit / 2 + unit + unit
-    return log_part + mantissa_part + cut_part + exp_part + config.power.lsb
+    exp_term = np.log(2) ** 2 * h**2 / 16 + unit / 2 + unit / 2 + unit + unit
+    return log_term + mantissa_term + x_term + exp_term + config.power.lsb
 
 
-def power(n: float, half_vector, config: Config, square: float = 0.0) -> float:
-    """Error of cos(s)**n: that of v carried through the power, and the power's own.
+def specular_power(n: float, config: Config) -> float:
+    """Error of cos(s)**n against (1 - v)**n of its operands, by the method `config.power_method`.
 
-    n c**(n-1) dv, with c at the end of each step of v where it is largest and dv where it is
-    largest: a bound, not an estimate.
+    n must be whole for "squaring".
+    """
+    if config.power_method == "squaring":
+        return specular_power_squaring(int(n), config)
+    return specular_power_tables(n, config)
+
+
+def power(n: float, half_vector: ArrayLike, config: Config, square: float = 0.0) -> float:
+    """Error of cos(s)**n: the error dv of v carried through the power, and `specular_power`.
+
+    v is divided into steps. Each step contributes n c**(n-1) dv with the largest c = cos(s) and the
+    largest dv of the step, so that the result is a bound and not an estimate. half_vector, square:
+    see `versine`.
     """
     v = np.linspace(0, 1, 1025) ** 2  # dense near the highlight
     dv = versine(v[1:], half_vector, config, square)
     c = np.minimum(1 - v[:-1] + dv, 1)
-    return float(np.max(n * c ** (n - 1) * dv)) + specular_power_tables(n, config)
+    return float(np.max(n * c ** (n - 1) * dv)) + specular_power(n, config)
 
 
-def weight(points, config: Config, square: float = 0.0) -> float:
-    """Error of W(i), codes `points` int[P]: the steepest line times the error of Zn, rounding."""
+def weight(points: Ints, config: Config, square: float = 0.0) -> float:
+    """Error of W(i): the steepest line of the table times the error of Zn, and the final rounding.
+
+    points: int[P], codes of W in `Config.coefficient`. square: see `squares`.
+    """
     real = config.coefficient.real(points)
     steepest = float(np.abs(np.diff(real)).max()) * (len(real) - 1)
     return steepest * cosine(config, square) + _round(config.weight)
 
 
 def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
-    """The budget of one material of `frame`; the last row bounds |code - 255 S| in LSB.
+    """The budget of one `material` (index) of `frame`; the last row bounds |code - 255 S| in LSB.
 
-    S is eq. (3) at the pixel; for Gouraud and flat shading, the interpolated intensity. By
-    `quadratic_spans` only where `squares` has a bound.
+    S is eq. (3) at the pixel; for Gouraud and flat shading S is the interpolated intensity. For
+    `quadratic_spans` ValueError is raised if `squares` has no bound.
     """
     white = (1 << config.colour_bits) - 1
     if config.technique != "phong":
-        cut = Row("cut of S", config.intensity.lsb, "interpolation is exact, the sum is cut once")
+        cut = Row("cut of S", config.intensity.lsb, "interpolation is exact, S is truncated once")
         total = white * cut.bound + 0.5
         return [cut, Row("code", total, f"LSB: {white} times the cut, and the final rounding")]
     table = frame.materials
@@ -302,27 +339,39 @@ def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
     w = float(config.coefficient.real(table.weight[material]).max())
     square = 0.0
     if config.normal_method == "quadratic_spans":
-        square = squares(frame, config)
+        bound = squares(frame, config)
+        if bound is None:
+            raise ValueError("the interpolated squares have no bound")
+        square = bound
         parts = [
             Row("squares", square, "interpolated, against |N|^2"),
             Row("normalizer: length", root_of_square(square, config), "1/sqrt of |N|^2, relative"),
             Row("cos(i)", cosine(config, square), "Zn aligned, length, rounding"),
-            Row("1 - cos(s)", float(quotient(1.0, config, square)), "largest: at cos(s) = 0"),
+            Row(
+                "1 - cos(s)",
+                float(quadratic_versine(1.0, config, square)),
+                "the largest, at cos(s) = 0",
+            ),
         ]
     else:
         parts = [
             Row("normalizer: direction", direction(config), "mantissas of the normal, radians"),
             Row("normalizer: length", length(config), "1/sqrt and its operand, relative"),
             Row("cos(i)", cosine(config), "direction, length, rounding"),
-            Row("w", across(frame.half_vector, config)[1], "direction, rounding; absolute part"),
+            Row(
+                "w",
+                half_vector_cross(frame.half_vector, config)[1],
+                "direction, rounding; absolute part",
+            ),
         ]
-    parts += [
+    method = {"tables": "log and exp tables", "squaring": "repeated squaring"}
+    parts.append(
         Row(
-            "specular_power_tables",
-            specular_power_tables(n, config),
-            f"log and exp tables, n = {n:g}",
-        ),
-    ]
+            "specular power",
+            specular_power(n, config),
+            f"{method.get(config.power_method, config.power_method)}, n = {n:g}",
+        )
+    )
     if w > 0:
         specular = w * power(n, frame.half_vector, config, square)
         weight_error = weight(table.weight[material], config, square)
@@ -333,14 +382,14 @@ def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
             "Cp (1 - d) times the error of cos(i)"),
         Row("specular term", specular, "W times the error of cos(s)^n"),
         Row("W(i)", weight_error, "steepest line times the error of cos(i), rounding"),
-        Row("cut of S", config.intensity.lsb, "products are whole, the sum is cut once"),
+        Row("cut of S", config.intensity.lsb, "products are exact, the sum is truncated once"),
     ]  # fmt: skip
     total = white * sum(row.bound for row in parts[5:]) + 0.5
     return [*parts, Row("code", total, f"LSB: {white} times the terms, and the final rounding")]
 
 
 def derived(config: Config, n: float) -> bool:
-    """Whether the budget covers the methods of `config` for the exponent `n`."""
+    """Whether a bound is derived for the methods of `config` and the exponent `n`."""
     power_method = config.power_method == "tables" or (
         config.power_method == "squaring" and n == int(n)
     )
@@ -348,9 +397,9 @@ def derived(config: Config, n: float) -> bool:
 
 
 def bound_lsb(frame: Frame, config: Config = DEFAULT) -> float | None:
-    """Bound of |code - 255 S| in LSB over the materials that `frame` uses (1/2 if it has none).
+    """Bound of |code - 255 S| in LSB over the materials that `frame` uses; 1/2 without spans.
 
-    None where no bound is derived for a method of `config`, or none for the spans (`squares`).
+    None if no bound is derived for a method of `config` (`derived`) or for the spans (`squares`).
     """
     used = np.unique(frame.spans["material"]).tolist()
     exponents = config.exponent.real(frame.materials.exponent[used])

@@ -1,17 +1,26 @@
-"""How far pixels are from each other (in bits) and from the exact shading (in LSB)."""
+# SPDX-License-Identifier: MIT
+"""Comparison metrics: bit-exact comparison of two pixel streams, and error against exact shading.
+
+Errors are in LSB of an 8-bit colour code.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+
+from phong75.model.arrays import ArrayLike, Ints
+from phong75.model.twin import Pixels
 
 
 @dataclass(frozen=True)
 class Mismatch:
-    """The first place where two streams differ: its index, and `x, y, r, g, b, last` of each.
+    """The first difference of two pixel streams.
 
-    A stream that ended too early has None there.
+    index: number of the pixel in the stream. expected, got: (x, y, red, green, blue, last) of the
+    pixel in either stream; None if the stream is shorter.
     """
 
     index: int
@@ -21,17 +30,22 @@ class Mismatch:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Two streams side by side: `pixels` of the longer one, `mismatches` of them, the `first`."""
+    """Result of comparing two pixel streams.
+
+    pixels: length of the longer stream. mismatches: number of pixels that differ. first: the first
+    of them, None if the streams are equal.
+    """
 
     pixels: int
     mismatches: int
     first: Mismatch | None
 
 
-def compare(expected, got) -> Comparison:
-    """Compare two streams of pixels (`model.twin.Pixels`) place by place, to the bit.
+def compare(expected: Pixels, got: Pixels) -> Comparison:
+    """Compare two streams of pixels (`model.twin.Pixels`) pixel by pixel, bit for bit.
 
-    Place, colour and the last flag all count; a pixel that only one stream has is a mismatch.
+    Position, colour and the last flag must be equal. A pixel that only one stream has is a
+    mismatch.
     """
     rows_expected, rows_got = _rows(expected), _rows(got)
     pixels = max(len(rows_expected), len(rows_got))
@@ -45,27 +59,34 @@ def compare(expected, got) -> Comparison:
     return Comparison(pixels, int(differs.sum()), first)
 
 
-def _rows(pixels):
+def _rows(pixels: Pixels) -> Ints:
+    """The fields of all pixels, int64[n, 6]."""
     return np.column_stack([pixels.x, pixels.y, pixels.rgb, pixels.last]).astype(np.int64)
 
 
-def _row(rows, index):
+def _row(rows: Ints, index: int) -> tuple[int, ...] | None:
+    """The fields of pixel `index` as a tuple; None if the stream is shorter."""
     return tuple(int(v) for v in rows[index]) if index < len(rows) else None
 
 
-def rounded(exact) -> np.ndarray:
-    """The correctly rounded codes, int64, of `exact` = 255*clamp(S, 0, 1): floor(exact + 1/2)."""
+def rounded(exact: ArrayLike) -> Ints:
+    """The correctly rounded codes floor(exact + 1/2), int64, of `exact` = 255 clamp(S, 0, 1)."""
     return np.floor(np.asarray(exact, np.float64) + 0.5).astype(np.int64)
 
 
-def error_metrics(codes, exact) -> dict:
-    """The error of `codes` (integers[n, 3]) against `exact` (float64[n, 3], 255*clamp(S, 0, 1)).
+def error_metrics(codes: ArrayLike, exact: ArrayLike) -> dict[str, Any]:
+    """Error of `codes` (integers[n, 3]) against `exact` = 255 clamp(S, 0, 1) (float64[n, 3]).
 
-    `exact` is not rounded, so perfect codes still have errors of up to 1/2 LSB. Only shaded pixels
-    belong here. The keys: `max_lsb`, `mean_lsb` (of magnitudes), `rms_lsb`, `p999_lsb` (99.9 % of
-    the channel values are at most this far off), `correctly_rounded` (the share of channel values
-    equal to `rounded(exact)`) and `psnr_db` (peak 255; None where there is no error at all). No
-    pixels means no error: 0 LSB, a share of 1, and None.
+    `exact` is not rounded, so that perfect codes have errors of up to 1/2 LSB. Pass only shaded
+    pixels, no background. The keys of the result:
+
+    - max_lsb, mean_lsb, rms_lsb: maximum, mean and RMS of the error's magnitude, LSB.
+    - p999_lsb: 99.9 % quantile: that many channel values have at most this error, LSB.
+    - correctly_rounded: fraction of the channel values that equal `rounded(exact)`.
+    - psnr_db: peak signal-to-noise ratio, dB, peak 255; None if all errors are 0.
+
+    Without pixels the errors are 0 LSB, the fraction is 1 and the PSNR None. Raises ValueError if
+    the shapes differ.
     """
     codes, exact = np.asarray(codes), np.asarray(exact, np.float64)
     if codes.shape != exact.shape:

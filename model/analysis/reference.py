@@ -1,23 +1,38 @@
-"""The float64 reference: the paper's eq. (3), written from the paper, not from the hardware.
+# SPDX-License-Identifier: MIT
+"""Float64 reference: eq. (3) of Phong (1975), implemented from the paper, not from the hardware.
 
-It shares no arithmetic with the twin: no table, no rounding, no block, and cos(s) in the paper's
-own form.
+The reference shares no arithmetic with the twin: it has no tables and no rounding, and it computes
+cos(s) in the form of the paper.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from phong75.model.arrays import ArrayLike, Ints, Reals, Spans
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import ExactFrame, Frame
 
 
-def shade(normal, cp_d, cp_rest, weight, exponent, eye, two_sided: bool):
-    """255 * clamp(S, 0, 1), float64[n, 3], by the paper's eq. (3).
+def shade(
+    normal: Reals,
+    cp_d: Reals,
+    cp_rest: Reals,
+    weight: Reals,
+    exponent: Reals,
+    eye: Reals,
+    two_sided: bool,
+) -> Reals:
+    """255 clamp(S, 0, 1) by the paper's eq. (3), float64[n, 3].
 
-    normal: float64[n, 3], any length, light frame. cp_d, cp_rest: float64[n, 3], Cp d and
-    Cp (1 - d). weight: float64[n, P], W at equally spaced Zn. exponent: float64[n].
-    eye: float64[3] or [n, 3], unit. A normal turned away from the light, or zero, leaves Cp d.
+    normal: float64[n, 3], any length, light frame.
+    cp_d, cp_rest: float64[n, 3], Cp d and Cp (1 - d), 0 to 1.
+    weight: float64[n, P], W at P equally spaced Zn from 0 to 1.
+    exponent: float64[n], n of eq. (3).
+    eye: float64[3] or [n, 3], unit vector u, light frame.
+    two_sided: shade |Zn|.
+
+    A zero normal, or one that points away from the light, gives Cp d.
     """
     if two_sided:
         normal = np.where(normal[:, 2:] < 0, -normal, normal)
@@ -27,27 +42,31 @@ def shade(normal, cp_d, cp_rest, weight, exponent, eye, two_sided: bool):
     cos_i = n[:, 2]
     cos_s = np.maximum(2 * cos_i * (n * eye).sum(axis=1) - eye[..., 2], 0)
     points = weight.shape[1]
-    place = np.clip(cos_i, 0, 1) * (points - 1)
-    left = np.minimum(place.astype(np.int64), points - 2)
+    position = np.clip(cos_i, 0, 1) * (points - 1)
+    left = np.minimum(position.astype(np.int64), points - 2)
     row = np.arange(len(n))
-    w = weight[row, left] + (weight[row, left + 1] - weight[row, left]) * (place - left)
+    w = weight[row, left] + (weight[row, left + 1] - weight[row, left]) * (position - left)
     s = cp_d + np.where(lit, cos_i, 0)[:, None] * cp_rest
     s = s + np.where(lit, w * cos_s**exponent, 0)[:, None]
     return 255 * np.clip(s, 0, 1)
 
 
-def _pixels(spans, start, step):
-    """Normals float64[n, 3] and material indices of all pixels of `spans`."""
+def _pixels(spans: Spans, start: Reals, step: Reals) -> tuple[Reals, Ints]:
+    """Interpolated vectors float64[n, 3] and material indices int[n] of all pixels of `spans`.
+
+    start, step: float64[spans, 3].
+    """
     length = np.maximum(spans["length"], 1)
     span = np.repeat(np.arange(len(spans)), length)
     k = np.arange(len(span)) - np.repeat(np.cumsum(length) - length, length)
     return start[span] + k[:, None] * step[span], spans["material"][span]
 
 
-def eye_of(half_vector) -> np.ndarray:
-    """The unit vector u, float64[..., 3], whose half vector to the light is along (hx, 0, hz).
+def eye_of(half_vector: ArrayLike) -> Reals:
+    """The unit eye vector u, float64[..., 3], light frame: u = 2 (h.k) h - k, k = (0, 0, 1).
 
-    half_vector: hx and hz, numbers or arrays[...].
+    half_vector: (hx, hz), numbers or arrays[...], of any scale; h is the unit vector along
+    (hx, 0, hz).
     """
     hx, hz = np.asarray(half_vector, np.float64)
     h = np.stack([hx, np.zeros_like(hx), hz], axis=-1)
@@ -56,7 +75,7 @@ def eye_of(half_vector) -> np.ndarray:
 
 
 def zero_normals(frame: Frame) -> int:
-    """How many pixels have no direction: their interpolated normal is zero."""
+    """Number of pixels of `frame` whose interpolated normal is the zero vector."""
     normal, _ = _pixels(
         frame.spans, frame.spans["start"].astype(float), frame.spans["step"].astype(float)
     )
@@ -64,8 +83,11 @@ def zero_normals(frame: Frame) -> int:
 
 
 def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:
-    """255 * clamp(S, 0, 1), float64[n, 3], in the order of the stream, from the integers at the
-    ports and in the tables."""
+    """255 clamp(S, 0, 1) from the integers at the ports and in the tables, float64[n, 3].
+
+    Rows are in the order of the stream. The comparison with the pipeline's codes shows the error of
+    the pipeline alone.
+    """
     start, step = frame.spans["start"].astype(float), frame.spans["step"].astype(float)
     if config.technique != "phong":
         intensity, _ = _pixels(frame.spans, start, step)
@@ -80,7 +102,11 @@ def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:
 
 
 def render_exact(frame: Frame, exact: ExactFrame, config: Config = DEFAULT) -> np.ndarray:
-    """The same from the scene's values before any rounding."""
+    """255 clamp(S, 0, 1) from the scene's values before any rounding, float64[n, 3].
+
+    exact: the values that were rounded to `frame`. The comparison with the pipeline's codes also
+    shows the error of rounding the input.
+    """
     normal, m = _pixels(frame.spans, exact.start, exact.step)
     if config.technique != "phong":
         return 255 * np.clip(normal, 0, 1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import platform
 from importlib.metadata import version
-from typing import Protocol
+from typing import Any, Protocol
 
 from phong75.model.analysis.metrics import Comparison
 from phong75.model.config import Config
@@ -44,10 +44,10 @@ def make_report(
     error: dict,
     bound_lsb: float | None,
     pruned_differ: int,
-    input_error: dict | None,
+    input_error: dict[str, Any] | None,
     degenerate_triangles: int,
-    wall_s: dict,
-) -> dict:
+    wall_s: dict[str, float],
+) -> dict[str, Any]:
     """The contents of `report.json`, ready for JSON: None stands for what is not defined.
 
     error, input_error: from `metrics.error_metrics`; the second is None where there is no scene

@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: MIT
 """The front end: from scene files and meshes to spans."""

@@ -1,8 +1,10 @@
-"""The camera: from the scene to the screen, and from scene directions to the light frame.
+# SPDX-License-Identifier: MIT
+"""Camera: projects scene points to the screen and turns scene directions into the light frame.
 
-Screen coordinates are continuous, in pixels: x to the right, y down, the centre of pixel (i, j)
-at (i + 1/2, j + 1/2). The eye vector u is the camera's axis for shading in any case ("the eye is
-also removed to infinity", Phong 1975); a perspective camera only moves vertices.
+Screen coordinates are continuous and in pixels: x grows to the right, y grows downward, and the
+centre of pixel (i, j) is at (i + 1/2, j + 1/2). The eye vector u of the shading is always the
+camera's axis ("the eye is also removed to infinity", Phong 1975). A perspective camera changes
+only the positions of the vertices.
 """
 
 from __future__ import annotations
@@ -11,31 +13,37 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from phong75.model.arrays import ArrayLike, Reals
 from phong75.model.front.mesh import apply_matrix, normalize
 
-#: Where the camera looks from by default: target towards eye, for pictures with z up.
+#: Default direction from the target towards the eye, for scenes whose z axis points up.
 DEFAULT_DIRECTION = (0.35, -1.0, 0.45)
 DEFAULT_UP = (0.0, 0.0, 1.0)
 DEFAULT_FOV = 30.0
 
-#: The light of a scene without one, relative to the camera (x right, y up, z towards the eye):
-#: over the observer's left shoulder.
+#: Default direction towards the light in camera axes (x right, y up, z towards the eye): over the
+#: observer's left shoulder.
 DEFAULT_LIGHT = (-0.5, 0.6, 1.0)
 
-#: Part of the picture that default framing fills.
+#: Fraction of the picture's width or height that default framing fills.
 FILL = 0.88
 
-#: Distance of the near plane of a perspective camera, in units of eye to target.
+#: Default distance of a perspective camera's near plane, as a fraction of the distance from eye to
+#: target.
 NEAR = 1e-3
 
 
 @dataclass(frozen=True)
 class Camera:
-    """projection: "orthographic" or "perspective". axes: float64[3, 3], unit rows right, up and
-    back (from the target towards the eye) in the scene. target, eye: float64[3].
-    height: extent of the picture from top to bottom at the target, scene units (orthographic).
-    fov: angle from top to bottom, degrees (perspective). near: distance of the near plane from
-    the eye, scene units (perspective).
+    """An orthographic or perspective camera.
+
+    projection: "orthographic" or "perspective".
+    axes: float64[3, 3], rows are the unit vectors right, up and back in scene axes; back points
+    from the target towards the eye.
+    target, eye: float64[3], scene points.
+    height: height of the picture at the target, scene units (orthographic only).
+    fov: vertical field of view, degrees (perspective only).
+    near: distance from the eye to the near plane, scene units (perspective only).
     """
 
     projection: str
@@ -47,11 +55,12 @@ class Camera:
     near: float = 0.0
 
     def project(self, points: np.ndarray, width: int, height: int) -> np.ndarray:
-        """Scene points float64[..., 3] to homogeneous screen points float64[..., 4].
+        """Project scene points float64[..., 3] to homogeneous screen points float64[..., 4].
 
-        Columns X, Y, w, z: screen x = X/w, screen y = Y/w in pixels of a picture of `width` by
-        `height`; w is 1, or the distance from the eye along the axis in perspective; z is the
-        coordinate towards the eye. `depth` makes depths of w and z.
+        The columns are X, Y, w, z. Screen x = X/w and screen y = Y/w, in pixels of a picture of
+        `width` by `height` pixels. w is 1 (orthographic) or the distance from the eye along the
+        camera's axis (perspective). z is the coordinate towards the eye. `depth` computes the
+        depth from w and z.
         """
         perspective = self.projection == "perspective"
         origin = self.eye if perspective else self.target
@@ -66,14 +75,20 @@ class Camera:
         return np.stack([width / 2.0 * w + scale * x, height / 2.0 * w - scale * y, w, z], axis=-1)
 
     def depth(self, w: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """A depth that grows with the distance from the eye and is linear over a triangle on the
-        screen: -z, or -1/w in perspective."""
+        """Depth of points: -z (orthographic) or -1/w (perspective); same shape as w and z.
+
+        The depth grows with the distance from the eye and is linear in screen x and y over a
+        triangle.
+        """
         return -1.0 / w if self.projection == "perspective" else -z
 
 
-def view_axes(back, up) -> np.ndarray | None:
-    """float64[3, 3]: unit rows right, up, back for a camera whose axis towards the eye is `back`
-    and whose picture has `up` upward; None if the two are parallel or one is zero."""
+def view_axes(back: ArrayLike, up: ArrayLike) -> Reals | None:
+    """Camera axes float64[3, 3]: unit rows right, up, back.
+
+    back: vector from the target towards the eye. up: vector that points upward in the picture.
+    Returns None if the two are parallel or one of them is zero.
+    """
     back, up = normalize(np.asarray(back, float)), normalize(np.asarray(up, float))
     right = np.cross(up, back)
     if np.linalg.norm(right) < 1e-9:
@@ -82,29 +97,33 @@ def view_axes(back, up) -> np.ndarray | None:
     return np.stack([right, np.cross(back, right), back])
 
 
-def fit_orthographic(points, axes, target, aspect: float) -> tuple[np.ndarray, float]:
-    """Target and height of an orthographic picture that holds all `points` (float64[V, 3]).
+def fit_orthographic(
+    points: Reals, axes: Reals, target: ArrayLike | None, aspect: float
+) -> tuple[Reals, float]:
+    """Target (float64[3]) and height (scene units) of an orthographic picture of all `points`.
 
-    target: None, to centre the picture, or the point (float64[3]) to keep in the middle.
-    aspect: width over height.
+    points: float64[V, 3]. axes: see `Camera`. target: the point in the middle of the picture
+    (float64[3]), or None to centre the picture on the points. aspect: width / height.
     """
     view = apply_matrix(axes, points)
     low, high = view.min(axis=0), view.max(axis=0)
     if target is None:
         centre = (low + high) / 2.0
-        target = centre @ axes
+        middle = centre @ axes
     else:
-        target = np.asarray(target, float)
-        centre = axes @ target
+        middle = np.asarray(target, float)
+        centre = axes @ middle
     reach = np.maximum(high - centre, centre - low)
     height = 2.0 * max(reach[1], reach[0] / aspect) / FILL
-    return target, height if height > 0 else 1.0
+    return middle, height if height > 0 else 1.0
 
 
-def fit_perspective(points, axes, target, aspect: float, fov: float):
-    """Target and distance of the eye from it so that all `points` are in a perspective picture.
+def fit_perspective(
+    points: Reals, axes: Reals, target: ArrayLike | None, aspect: float, fov: float
+) -> tuple[Reals, float]:
+    """Target (float64[3]) and distance from eye to target of a perspective picture of all `points`.
 
-    Arguments as for `fit_orthographic`, fov in degrees; returns (float64[3], float).
+    fov: vertical field of view, degrees. The other arguments are those of `fit_orthographic`.
     """
     view = apply_matrix(axes, points)
     low, high = view.min(axis=0), view.max(axis=0)
@@ -118,22 +137,23 @@ def fit_perspective(points, axes, target, aspect: float, fov: float):
     return target, max(distance, 1e-3 * size)
 
 
-def light_frame(light, eye) -> tuple[np.ndarray, np.ndarray]:
-    """The paper's frame for shading: z towards the light, turned about z so that u_y = 0 <= u_x.
+def light_frame(light: ArrayLike, eye: ArrayLike) -> tuple[Reals, Reals]:
+    """Light frame of the paper (Phong 1975): z points towards the light, u_y = 0 and u_x >= 0.
 
-    light, eye: non-zero vectors in the scene towards the light and the eye (3 reals each).
-    Returns float64[3, 3], the unit rows of the frame (it takes scene directions to the light
-    frame), and the unit vector u there, float64[3]. If eye and light are parallel, any x axis
-    serves; it is then made from the scene axis farthest from the light.
+    light, eye: non-zero scene vectors towards the light and the eye (3 reals each).
+    Returns (axes, u). axes: float64[3, 3], unit rows; the product axes @ v takes a scene direction
+    v to the light frame. u: float64[3], the unit eye vector in the light frame. If eye and light
+    are parallel, every x axis satisfies u_y = 0; x is then derived from the scene axis farthest
+    from the light.
     """
     k, u = normalize(np.asarray(light, float)), normalize(np.asarray(eye, float))
     cosine = float(np.clip(k @ u, -1.0, 1.0))
-    across = u - cosine * k
-    if np.linalg.norm(across) < 1e-9:
+    perpendicular = u - cosine * k
+    if np.linalg.norm(perpendicular) < 1e-9:
         cosine = float(np.sign(cosine))
         axis = np.eye(3)[np.argmin(np.abs(k))]
-        across = axis - (axis @ k) * k
-    x = normalize(across)
+        perpendicular = axis - (axis @ k) * k
+    x = normalize(perpendicular)
     x = normalize(x - (x @ k) * k)
     frame = np.stack([x, np.cross(k, x), k])
     sine = np.sqrt(max(0.0, 1.0 - cosine * cosine))

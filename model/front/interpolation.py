@@ -1,10 +1,12 @@
-"""Interpolation over a triangle as the paper does it: along two edges, then along the scan line.
+# SPDX-License-Identifier: MIT
+"""Linear interpolation over a triangle: along two edges, then along the scan line.
 
 A point between two edges gets "the linear interpolation of the normals at the intersections of
-these two edges with a scan plane passing through the point" (Phong 1975, eq. (2) and after); the
-same carries Gouraud's intensities. Over triangles this is the affine function through the three
-vertices. Lecture notes on the method (Starkey, "Shading Techniques", section 5) normalize the
-vectors at the edges before going along the line: `normalize_edges`.
+these two edges with a scan plane passing through the point" (Phong 1975, eq. (2) and after).
+Gouraud's intensities are interpolated in the same way. Over a triangle the result is the affine
+function through the three vertices. Lecture notes on the method (Starkey, "Shading Techniques",
+section 5) normalize the vectors at the edges before the step along the line; the argument
+`normalize_edges` selects this.
 """
 
 from __future__ import annotations
@@ -13,16 +15,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from phong75.model.arrays import ArrayLike, Ints, Reals
 from phong75.model.front.mesh import normalize
 
 
 @dataclass
 class ScanLineWeights:
-    """Where points lie in their triangles, one entry a point.
+    """Interpolation weights of n points, each in a triangle of its own.
 
-    lower: bool[n], whether the scan line crosses the lower of the two short edges. along_long,
-    along_short: float64[n], how far down the long edge and that short edge the line crosses them.
-    across: float64[n], how far the point is from the long edge (0) to the short edge (1).
+    The long edge goes from the top vertex to the bottom vertex; the other two are the short edges.
+    lower: bool[n], whether the scan line crosses the lower short edge.
+    along_long, along_short: float64[n], 0 to 1, where the scan line crosses the long edge and the
+    short edge (0: upper end).
+    across: float64[n], 0 to 1, position of the point between the long edge (0) and the short one.
     """
 
     lower: np.ndarray
@@ -31,12 +36,15 @@ class ScanLineWeights:
     across: np.ndarray
 
 
-def scan_line_weights(x, y, px, py) -> ScanLineWeights:
-    """Weights of the points (px, py) ([n] each) in triangles x, y ([n, 3] each), whose vertices
-    are ordered by y and which the points' scan lines cross (y[:, 0] <= py < y[:, 2]).
+def scan_line_weights(
+    x: Reals | Ints, y: Reals | Ints, px: Reals | Ints, py: Reals | Ints
+) -> ScanLineWeights:
+    """Weights of the points (px, py) in the triangles x, y.
 
-    Integer coordinates of up to 30 bits give each distance from an edge exactly, so that slivers
-    lose no accuracy: the weights of a point inside are in [0, 1] however thin the triangle is.
+    px, py: [n]. x, y: [n, 3], vertices sorted by y. Each scan line must cross its triangle:
+    y[:, 0] <= py < y[:, 2]. With integer coordinates of up to 30 bits the distances from the edges
+    are exact before the division. So the weights of a point inside are in [0, 1] however thin the
+    triangle is.
     """
     x0, x1, x2 = x[:, 0], x[:, 1], x[:, 2]
     y0, y1, y2 = y[:, 0], y[:, 1], y[:, 2]
@@ -54,10 +62,10 @@ def scan_line_weights(x, y, px, py) -> ScanLineWeights:
     )
 
 
-def interpolate(values, weights: ScanLineWeights, normalize_edges: bool = False) -> np.ndarray:
-    """float64[n, C]: `values` (float64[n, 3, C], at the vertices ordered by y) at the points.
+def interpolate(values: Reals, weights: ScanLineWeights, normalize_edges: bool = False) -> Reals:
+    """Interpolate `values` (float64[n, 3, C], vertices sorted by y) to the points: float64[n, C].
 
-    normalize_edges: bring the vectors (C = 3) at both edges to unit length first.
+    normalize_edges: normalize the vectors (C = 3) at both edges before the step along the line.
     """
     top, middle, bottom = values[:, 0], values[:, 1], values[:, 2]
     lower = weights.lower[:, None]
@@ -69,13 +77,18 @@ def interpolate(values, weights: ScanLineWeights, normalize_edges: bool = False)
     return _mix(on_long, on_short, weights.across)
 
 
-def _mix(a, b, t):
+def _mix(a: Reals, b: Reals, t: Reals) -> Reals:
+    """Linear interpolation from a (t = 0) to b (t = 1): float64[n, C]."""
     return a + (b - a) * t[:, None]
 
 
-def interpolate_at(triangle, values, point, normalize_edges: bool = False) -> np.ndarray:
-    """float64[C]: `values` ([3, C]) at the vertices `triangle` ([3, 2], x and y in any order)
-    interpolated at the continuous `point` (x, y) inside, by the two steps above."""
+def interpolate_at(
+    triangle: ArrayLike, values: ArrayLike, point: ArrayLike, normalize_edges: bool = False
+) -> Reals:
+    """Interpolate `values` at one point of one triangle: float64[C].
+
+    triangle: [3, 2], x and y of the vertices in any order. values: [3, C]. point: (x, y), inside.
+    """
     triangle, values = np.asarray(triangle, float), np.asarray(values, float)
     order = np.argsort(triangle[:, 1], kind="stable")
     x, y = triangle[None, order, 0], triangle[None, order, 1]

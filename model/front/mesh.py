@@ -1,8 +1,9 @@
-"""Triangle meshes: reading files, and the normal at every corner of every face.
+# SPDX-License-Identifier: MIT
+"""Triangle meshes: file input and the normal at every corner of every face.
 
 A polygonal model knows normals "only at the vertices of polygons" (Phong 1975, "Specular
-Reflection"). A vertex where surfaces meet in a sharp edge has one normal for each of them, so the
-normals here belong to the corners of faces and not to the vertices.
+Reflection"). At a sharp edge a vertex needs one normal per adjacent surface. So this module stores
+a normal per corner of a face, not per vertex.
 """
 
 from __future__ import annotations
@@ -13,19 +14,20 @@ from pathlib import Path
 
 import numpy as np
 
+from phong75.model.arrays import ArrayLike, Ints, Reals
 from phong75.model.frame import InputError
 
-#: The kinds of mesh file that are read, by the end of their name.
+#: Supported mesh files, by suffix.
 MESH_SUFFIXES = (".obj", ".ply", ".stl", ".glb")
 
-#: Edges that bend more than this many degrees stay sharp where nothing else is said.
+#: Default crease angle, degrees: edges that bend by more than this stay sharp.
 DEFAULT_CREASE = 60.0
 
-#: A triangle is degenerate if its doubled area is no more than this part of its longest edge
-#: squared: its normal would be nothing but rounding.
+#: A triangle is degenerate if twice its area divided by the square of its longest edge is at most
+#: this. The normal of such a triangle would be rounding noise.
 DEGENERATE_AREA = 1e-12
 
-#: Coordinates beyond this would overflow when they are multiplied.
+#: Largest magnitude of a coordinate. Products of larger coordinates could overflow float64.
 MAX_COORDINATE = 1e60
 
 
@@ -33,9 +35,10 @@ MAX_COORDINATE = 1e60
 class Mesh:
     """Triangles with a unit normal at every corner.
 
-    vertices: float64[V, 3], in the units of the scene. faces: int64[F, 3], indices of vertices,
-    counter-clockwise seen from outside. normals: float64[F, 3, 3], unit length, outward.
-    degenerate: number of triangles that were left out because they have no area.
+    vertices: float64[V, 3], scene units.
+    faces: int64[F, 3], vertex indices, counter-clockwise seen from outside.
+    normals: float64[F, 3, 3], unit length, outward, one per corner.
+    degenerate: number of triangles that were dropped because they have no area.
     """
 
     vertices: np.ndarray
@@ -43,10 +46,18 @@ class Mesh:
     normals: np.ndarray
     degenerate: int = 0
 
-    def transformed(self, scale=(1.0, 1.0, 1.0), rotate=(0.0, 0.0, 0.0), translate=(0, 0, 0)):
-        """This mesh scaled, then rotated about the fixed x, y and z axes (degrees, in this
-        order), then moved: a new Mesh. Normals go by the inverse transpose; a scale that mirrors
-        also turns the triangles round, so that counter-clockwise stays outside.
+    def transformed(
+        self,
+        scale: ArrayLike = (1.0, 1.0, 1.0),
+        rotate: ArrayLike = (0.0, 0.0, 0.0),
+        translate: ArrayLike = (0, 0, 0),
+    ) -> Mesh:
+        """A new Mesh: this one scaled, then rotated, then translated.
+
+        scale: a number or 3 (x, y, z). rotate: 3 angles in degrees about the fixed x, y and z
+        axes, applied in this order. translate: 3 scene units. Normals are multiplied by the
+        inverse transpose of the matrix. A mirroring scale also reverses the order of the vertices,
+        so that faces stay counter-clockwise seen from outside.
         """
         scale = np.broadcast_to(np.asarray(scale, np.float64), 3)
         rotation = rotation_matrix(rotate)
@@ -59,14 +70,14 @@ class Mesh:
         return Mesh(vertices, faces, normals, self.degenerate)
 
     def with_crease(self, crease: float) -> Mesh:
-        """This mesh with new normals from its faces (see `corner_normals`)."""
+        """A new Mesh with normals computed from the faces (see `corner_normals`)."""
         normals = corner_normals(self.vertices, self.faces, crease)
         return Mesh(self.vertices, self.faces, normals, self.degenerate)
 
 
 def normalize(vectors: np.ndarray) -> np.ndarray:
-    """`vectors` (float64[..., 3]) at unit length; the zero vector stays zero."""
-    # The largest component comes first to 1, so that squares cannot overflow or vanish.
+    """`vectors` (float64[..., 3]) scaled to unit length; the zero vector stays zero."""
+    # The largest component is scaled to 1 first, so that squares neither overflow nor underflow.
     largest = np.max(np.abs(vectors), axis=-1, keepdims=True)
     vectors = vectors / np.where(largest > 0, largest, 1.0)
     length = np.sqrt(np.sum(vectors * vectors, axis=-1, keepdims=True))
@@ -76,15 +87,16 @@ def normalize(vectors: np.ndarray) -> np.ndarray:
 def apply_matrix(matrix: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     """`matrix` (float64[3, 3]) times each of `vectors` (float64[..., 3]).
 
-    Written out by component: a BLAS product may round equal vectors differently by their place in
-    the array, and two copies of a vertex must stay equal, or cracks open between triangles.
+    The product is written out by component because a BLAS product may round equal vectors
+    differently depending on their position in the array. Copies of a vertex must stay equal, or
+    cracks open between triangles.
     """
     x, y, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
     return np.stack([row[0] * x + row[1] * y + row[2] * z for row in matrix], axis=-1)
 
 
-def rotation_matrix(degrees) -> np.ndarray:
-    """float64[3, 3]: the rotation about x, then y, then z (fixed axes) by `degrees` (3 reals)."""
+def rotation_matrix(degrees: ArrayLike) -> Reals:
+    """Rotation matrix float64[3, 3]: about the fixed x, then y, then z axis by `degrees` (3)."""
     (cx, cy, cz), (sx, sy, sz) = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     about_x = np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
     about_y = np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
@@ -93,7 +105,10 @@ def rotation_matrix(degrees) -> np.ndarray:
 
 
 def face_normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """float64[F, 3]: unit normals of the triangles; zero for degenerate ones."""
+    """Unit normals of the faces, float64[F, 3]; zero for degenerate faces.
+
+    vertices: float64[V, 3]. faces: int64[F, 3].
+    """
     a, b, c = (vertices[faces[:, i]] for i in range(3))
     longest = np.max(np.abs(np.stack([b - a, c - b, a - c])), axis=(0, 2))[:, None]
     longest = np.where(longest > 0, longest, 1.0)
@@ -103,17 +118,18 @@ def face_normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 
 def corner_normals(vertices: np.ndarray, faces: np.ndarray, crease: float) -> np.ndarray:
-    """float64[F, 3, 3]: a unit normal for each corner of each face, from the faces alone.
+    """Unit normals of all corners, float64[F, 3, 3], computed from the faces alone.
 
-    The normal at a corner is the mean of the normals of the faces round its vertex that hang
-    together there across edges bent by no more than `crease` degrees (Starkey, "Shading
-    Techniques", section 3: average only what should appear smoothly connected). So `crease` = 0
-    gives flat faces (but for flat neighbours, where it makes no difference), 180 smooths all. Faces
-    count by their angle at the vertex (Thuermer and Wuethrich 1998), so that the mean does not
-    depend on how polygons were cut into triangles. Vertices at the same place are one vertex.
+    The normal at a corner is the weighted mean of the normals of the faces around its vertex. Only
+    faces that are connected to the corner's face across edges that bend by at most `crease`
+    degrees count (Starkey, "Shading Techniques", section 3: average only what should appear
+    smoothly connected). `crease` = 0 gives flat faces, 180 smooths every edge. The weight of a
+    face is its angle at the vertex (Thuermer and Wuethrich 1998), so that the mean does not
+    depend on how polygons were cut into triangles. Vertices with equal coordinates are treated as
+    one vertex.
     """
     flat = face_normals(vertices, faces)
-    welded = places(vertices)[faces]
+    welded = weld(vertices)[faces]
     group = _smooth_groups(welded, flat, np.cos(np.radians(crease)))
     weight = _corner_angles(vertices, faces)
     total = np.empty((group.size, 3))
@@ -121,22 +137,22 @@ def corner_normals(vertices: np.ndarray, faces: np.ndarray, crease: float) -> np
         share = (weight * flat[:, None, axis]).reshape(-1)
         total[:, axis] = np.bincount(group, weights=share, minlength=group.size)
     mean = normalize(total[group]).reshape(-1, 3, 3)
-    # Opposite faces can cancel out; what is left of them is the face's own normal.
+    # Normals of opposite faces can cancel out. Such a corner takes the normal of its face.
     cancelled = np.sum(total[group] ** 2, axis=1).reshape(-1, 3) < 1e-20
     return np.where(cancelled[..., None], flat[:, None, :], mean)
 
 
-def places(vertices: np.ndarray) -> np.ndarray:
-    """int64[V]: a number for each of `vertices` (float64[V, 3]), equal where they coincide."""
+def weld(vertices: np.ndarray) -> np.ndarray:
+    """A label for each of `vertices` (float64[V, 3]), int64[V]; equal coordinates, equal label."""
     order = np.lexsort(vertices.T)
-    moved = np.any(np.diff(vertices[order], axis=0) != 0, axis=1)
-    place = np.empty(len(vertices), np.int64)
-    place[order] = np.concatenate([[0], np.cumsum(moved)])
-    return place
+    differs = np.any(np.diff(vertices[order], axis=0) != 0, axis=1)
+    label = np.empty(len(vertices), np.int64)
+    label[order] = np.concatenate([[0], np.cumsum(differs)])
+    return label
 
 
 def _corner_angles(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """float64[F, 3]: the angle of each face at each of its corners, radians."""
+    """Angle of each face at each of its corners, float64[F, 3], radians."""
     corners = vertices[faces]
     ahead = normalize(np.roll(corners, -1, axis=1) - corners)
     behind = normalize(np.roll(corners, 1, axis=1) - corners)
@@ -144,10 +160,11 @@ def _corner_angles(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
 
 
 def _smooth_groups(welded: np.ndarray, flat: np.ndarray, min_cosine: float) -> np.ndarray:
-    """int64[3 F]: a label for each corner, equal where corners share a normal.
+    """A label for each corner, int64[3 F], equal where corners share a normal.
 
-    Corners at a vertex are linked across each edge there that is not a crease; the groups are the
-    connected components of these links.
+    welded: int64[F, 3], welded vertices of the faces. flat: float64[F, 3], normals of the faces.
+    min_cosine: cosine of the crease angle. Two corners at a vertex are linked if their faces share
+    an edge that is not a crease. The groups are the connected components of the links.
     """
     count = len(welded)
     start, end = welded, np.roll(welded, -1, axis=1)  # edge k of a face: from corner k to k + 1
@@ -170,25 +187,31 @@ def _smooth_groups(welded: np.ndarray, flat: np.ndarray, min_cosine: float) -> n
     b = np.concatenate([at_low[second], at_high[second]])
 
     label = np.arange(3 * count)
-    while True:  # each turn takes the smallest label over a link, then over the labels found
+    while True:  # spread the smaller label over each link, then follow labels to their root
         least = np.minimum(label[a], label[b])
-        changed = label.copy()
-        np.minimum.at(changed, label[a], least)
-        np.minimum.at(changed, label[b], least)
-        while np.any(changed[changed] != changed):
-            changed = changed[changed]
-        if np.array_equal(changed, label):
+        spread = label.copy()
+        np.minimum.at(spread, label[a], least)
+        np.minimum.at(spread, label[b], least)
+        while np.any(spread[spread] != spread):
+            spread = spread[spread]
+        if np.array_equal(spread, label):
             return label
-        label = changed
+        label = spread
 
 
-def make_mesh(where: str, vertices, faces, normals=None, crease: float | None = None) -> Mesh:
+def make_mesh(
+    where: str,
+    vertices: ArrayLike,
+    faces: ArrayLike,
+    normals: ArrayLike | None = None,
+    crease: float | None = None,
+) -> Mesh:
     """Check raw arrays and make a Mesh of them.
 
-    where: what to call the mesh in messages. vertices: [V, 3]; faces: [F, 3]; normals: None, or
-    [F, 3, 3] of any length. `crease` in degrees asks for new normals; without it given normals are
-    kept, and missing ones are made with `DEFAULT_CREASE`. Degenerate triangles are dropped and
-    counted. Raises InputError.
+    where: name of the mesh in error messages. vertices: [V, 3]. faces: [F, 3]. normals: [F, 3, 3]
+    of any length, or None. crease: if given (degrees), all normals are computed from the faces;
+    else given normals are kept and missing ones are computed with `DEFAULT_CREASE`. Degenerate
+    triangles are dropped and counted. Raises InputError if the arrays are not a mesh.
     """
     vertices = np.asarray(vertices, np.float64).reshape(-1, 3)
     faces = np.asarray(faces, np.int64).reshape(-1, 3)
@@ -224,13 +247,13 @@ def make_mesh(where: str, vertices, faces, normals=None, crease: float | None = 
     return Mesh(vertices, faces, normals, int(np.count_nonzero(~good)))
 
 
-def load_mesh(path, crease: float | None = None) -> Mesh:
-    """Read an OBJ, PLY, STL or GLB file through trimesh; all its parts become one Mesh.
+def load_mesh(path: str | Path, crease: float | None = None) -> Mesh:
+    """Read an OBJ, PLY, STL or GLB file through trimesh; all parts of the file become one Mesh.
 
-    Normals of the file are kept unless `crease` (degrees) is given; files without them, and STL,
-    which has only those of faces, get the mean over the surrounding faces. A file whose faces
-    wind clockwise (by its own normals, or by the negative volume of a closed mesh) is turned
-    round. Raises InputError naming the file.
+    Normals of the file are kept unless `crease` (degrees) is given. Files without corner normals
+    (every STL file) get normals from `corner_normals`. A mesh whose faces are clockwise is
+    reversed: clockwise by the file's normals or, without normals, by a negative volume of a closed
+    mesh. Raises InputError that names the file.
     """
     path = Path(path)
     if path.suffix.lower() not in MESH_SUFFIXES:
@@ -238,10 +261,10 @@ def load_mesh(path, crease: float | None = None) -> Mesh:
     if not path.is_file():
         raise InputError(f"{path}: no such file")
     vertices, faces, normals = _read_parts(path)
-    given = crease is None and normals is not None
+    keep_normals = crease is None and normals is not None
     mesh = make_mesh(str(path), vertices, faces, normals, crease)
     flat = face_normals(mesh.vertices, mesh.faces)
-    if given:
+    if keep_normals:
         agreement = np.sum(flat[:, None, :] * mesh.normals)
         if agreement < 0:
             mesh = Mesh(mesh.vertices, mesh.faces[:, ::-1], mesh.normals[:, ::-1], mesh.degenerate)
@@ -251,18 +274,21 @@ def load_mesh(path, crease: float | None = None) -> Mesh:
 
 
 def is_closed(mesh: Mesh) -> bool:
-    """Whether every edge of `mesh` is run through once in each direction: a closed surface that
-    winds one way everywhere, so that no back face can be seen from outside."""
+    """Whether `mesh` is a closed surface: each edge belongs to two faces, once per direction.
+
+    Such a surface has one winding everywhere, so that no back face is visible from outside.
+    """
     return _directed_edges(mesh)[1]
 
 
 def is_consistent(mesh: Mesh) -> bool:
-    """Whether no edge of `mesh` is run through twice in the same direction."""
+    """Whether the faces of `mesh` have one winding: no directed edge occurs twice."""
     return _directed_edges(mesh)[0]
 
 
 def _directed_edges(mesh: Mesh) -> tuple[bool, bool]:
-    welded = places(mesh.vertices)[mesh.faces]
+    """(is_consistent, is_closed) of `mesh`."""
+    welded = weld(mesh.vertices)[mesh.faces]
     start, end = welded.reshape(-1), np.roll(welded, -1, axis=1).reshape(-1)
     size = int(welded.max()) + 1
     forward = np.sort(start * size + end)
@@ -271,15 +297,18 @@ def _directed_edges(mesh: Mesh) -> tuple[bool, bool]:
 
 
 def _volume(mesh: Mesh) -> float:
+    """Signed volume of a closed `mesh`, scene units cubed; negative if its faces are clockwise."""
     centre = np.mean(mesh.vertices, axis=0)
     a, b, c = (mesh.vertices[mesh.faces[:, i]] - centre for i in range(3))
     return float(np.sum(a * np.cross(b, c)) / 6.0)
 
 
-def _read_parts(path: Path):
-    """Vertices [V, 3], faces [F, 3] and corner normals [F, 3, 3] (or None) of all parts of a
-    file, each moved to its place. Raises InputError."""
-    import trimesh  # takes a third of a second, which scenes of shapes need not spend
+def _read_parts(path: Path) -> tuple[Reals, Ints, Reals | None]:
+    """Vertices [V, 3], faces [F, 3] and corner normals [F, 3, 3] (or None) of a file.
+
+    The parts of the file are transformed to scene coordinates and joined. Raises InputError.
+    """
+    import trimesh  # here because the import takes a third of a second; scenes of shapes skip it
 
     try:
         if path.suffix.lower() == ".obj":
@@ -293,10 +322,11 @@ def _read_parts(path: Path):
         raise InputError(f"{path}: cannot be read: {error.strerror or error}") from None
     except IndexError as error:
         raise InputError(f"{path}: index out of range, or cut short: {_line(error)}") from None
-    except Exception as error:  # readers of trimesh raise whatever their libraries do
+    except Exception as error:  # trimesh's readers pass on any exception of their libraries
         raise InputError(f"{path}: not a readable mesh: {_line(error)}") from None
 
-    all_vertices, all_faces, all_normals, offset = [], [], [], 0
+    all_vertices, all_faces, offset = [], [], 0
+    all_normals: list[Reals | None] = []
     for node in sorted(scene.graph.nodes_geometry):
         matrix, name = scene.graph.get(node)
         part = scene.geometry[name]
@@ -306,10 +336,10 @@ def _read_parts(path: Path):
         linear, shift = matrix[:3, :3], matrix[:3, 3]
         in_range = len(faces) and faces.min() >= 0 and faces.max() < len(vertices)
         if not in_range:
-            return vertices, faces, None  # for `make_mesh` to say what is wrong
-        # trimesh makes normals up where the file has none; only those of the file are wanted.
-        given = "vertex_normals" in part._cache
-        normals = np.asarray(part.vertex_normals)[faces] if given else None
+            return vertices, faces, None  # `make_mesh` raises the error
+        # Without normals in the file, trimesh would compute some. Only the file's are wanted.
+        from_file = "vertex_normals" in part._cache
+        normals = np.asarray(part.vertex_normals)[faces] if from_file else None
         if not np.array_equal(matrix, np.eye(4)):
             vertices = apply_matrix(linear, vertices) + shift
             if normals is not None:
@@ -326,15 +356,18 @@ def _read_parts(path: Path):
     vertices, faces = np.concatenate(all_vertices), np.concatenate(all_faces)
     if all(n is None for n in all_normals):
         return vertices, faces, None
-    if any(n is None for n in all_normals):  # some parts have normals: make those of the others
-        made = corner_normals(vertices, faces, DEFAULT_CREASE)
-        pieces = np.split(made, np.cumsum([len(f) for f in all_faces])[:-1])
-        all_normals = [m if n is None else n for m, n in zip(pieces, all_normals, strict=True)]
-    return vertices, faces, np.concatenate(all_normals)
+    if any(n is None for n in all_normals):  # some parts have no normals: compute theirs
+        computed = corner_normals(vertices, faces, DEFAULT_CREASE)
+        pieces = np.split(computed, np.cumsum([len(f) for f in all_faces])[:-1])
+        all_normals = [c if n is None else n for c, n in zip(pieces, all_normals, strict=True)]
+    return vertices, faces, np.concatenate([n for n in all_normals if n is not None])
 
 
 def _check_obj_indices(path: Path) -> None:
-    """OBJ counts from 1 (and from -1 backwards); trimesh would take 0 for the last vertex."""
+    """Raise InputError for an index 0 in an OBJ file, which trimesh reads as the last vertex.
+
+    Indices of OBJ start at 1, or count backwards from -1.
+    """
     zero = re.search(rb"^f[ \t](?:[^\n]*[ \t])?[-+]?0+(?![\d.])[^\n]*", path.read_bytes(), re.M)
     if zero:
         text = zero.group().decode(errors="replace").strip()

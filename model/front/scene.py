@@ -1,7 +1,8 @@
-"""Scenes: TOML files, bundled ones by name, and bare mesh files, checked from end to end.
+# SPDX-License-Identifier: MIT
+"""Scenes: reads and checks TOML scene files, bundled scenes (by name) and bare mesh files.
 
-Every mistake in a file becomes an `InputError` of one line that names the file, the key and the
-value. `scenes/*.toml` are examples. All keys, of which only `shape` or `mesh` must be there:
+A mistake in a scene file raises an `InputError` of one line that names the file, the key and the
+value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All keys:
 
     size = [640, 480]               # pixels
     background = [0.0, 0.0, 0.0]    # red, green, blue, 0 to 1
@@ -12,7 +13,7 @@ value. `scenes/*.toml` are examples. All keys, of which only `shape` or `mesh` m
     direction = [-0.5, 0.6, 1.0]    # towards the light, any length
     relative_to = "camera"          # x right, y up, z to the eye; or "scene" (default)
 
-    [camera]                        # what is left out is chosen to show all objects
+    [camera]                        # omitted keys are chosen so that all objects are visible
     projection = "orthographic"     # or "perspective"
     direction = [0.35, -1.0, 0.45]  # from the target towards the eye; or
     eye = [1, -3, 2]                #   a point
@@ -24,23 +25,23 @@ value. `scenes/*.toml` are examples. All keys, of which only `shape` or `mesh` m
 
     [materials.NAME]                # eq. (3) of the paper; up to 16
     color = [0.7, 0.6, 0.5]         # Cp
-    d = 0.15                        # environmental diffuse reflection
+    d = 0.15                        # environmental diffuse reflection coefficient, 0 to 1
     n = 10                          # 1 to 128, whole or not
     W = 0.4                         # or values at equally spaced Zn = cos(i) from 0 to 1, or
     W = { degrees = [0, 60, 90], values = [0.2, 0.3, 0.8] }  # at incident angles i
 
     [[objects]]
-    shape = "teapot"                # sphere, torus, cone, pyramid; their parameters (`shapes`)
-    divisions = 10                  #   are keys; or
-    mesh = "bunny.obj"              # a file, relative to this one
-    crease = 60                     # edges that bend more (degrees) are sharp; makes new normals
-    scale = 1.0                     # or [x, y, z]; first scaled, then
-    rotate = [0, 0, 0]              # turned about x, y, z (degrees), then
-    translate = [0, 0, 0]           # moved
+    shape = "teapot"                # or sphere, torus, cone, pyramid
+    divisions = 10                  # the parameters of a shape's function (`shapes`) are keys
+    mesh = "bunny.obj"              # instead of `shape`: a mesh file, relative to the scene file
+    crease = 60                     # edges that bend more (degrees) are sharp; recomputes normals
+    scale = 1.0                     # or [x, y, z]; applied first
+    rotate = [0, 0, 0]              # degrees about x, y, z; applied after the scale
+    translate = [0, 0, 0]           # applied last
     material = "NAME"               # or { color = ..., n = ... }
     name = "my teapot"
 
-W is piecewise linear in Zn between the points given, and constant beyond them.
+W is piecewise linear in Zn between the given points and constant beyond them.
 """
 
 from __future__ import annotations
@@ -49,11 +50,14 @@ import difflib
 import inspect
 import math
 import tomllib
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from phong75.model.arrays import ArrayLike, Reals
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import InputError
 from phong75.model.front import shapes
@@ -75,7 +79,7 @@ DEFAULT_SIZE = (640, 480)
 DEFAULT_BACKGROUND = (0.05, 0.06, 0.08)
 INTERPOLATIONS = ("linear", "normalized_edges")
 
-SHAPES = {
+SHAPES: dict[str, Callable[..., Mesh]] = {
     "sphere": shapes.sphere,
     "torus": shapes.torus,
     "cone": shapes.cone,
@@ -83,18 +87,20 @@ SHAPES = {
     "teapot": shapes.teapot,
 }
 
-#: Largest tessellation parameters: more would only fill the memory, the triangles being far
-#: below the size of a dot.
+#: Largest tessellation parameters. Finer meshes only take memory: at these values triangles are
+#: far smaller than a pixel.
 MAX_TESSELLATION = {"divisions": 128, "segments": 1024, "sides": 1024, "rings": 1024}
 
 
 @dataclass(frozen=True)
 class Material:
-    """Phong's eq. (3) for one material.
+    """Coefficients of one material in Phong's eq. (3).
 
-    color: Cp of red, green and blue; d: environmental diffuse reflection coefficient; all in
-    [0, 1]. n: the power, 1 to 128. weight_zn, weight_values: W(i) at increasing Zn = cos(i) within
-    [0, 1], piecewise linear in Zn between and constant beyond.
+    color: Cp of red, green and blue, 0 to 1.
+    d: environmental diffuse reflection coefficient, 0 to 1.
+    n: specular exponent, 1 to 128.
+    weight_zn, weight_values: points of W(i): increasing Zn = cos(i) and W there, both 0 to 1. W is
+    piecewise linear in Zn between the points and constant beyond them.
     """
 
     color: tuple[float, float, float] = (0.65, 0.62, 0.58)
@@ -103,25 +109,28 @@ class Material:
     weight_zn: tuple[float, ...] = (0.0, 1.0)
     weight_values: tuple[float, ...] = (0.4, 0.4)
 
-    def weight(self, zn) -> np.ndarray:
+    def weight(self, zn: ArrayLike) -> Reals:
         """W at `zn` (any shape), float64."""
-        return np.interp(zn, self.weight_zn, self.weight_values)
+        return np.interp(np.asarray(zn, float), self.weight_zn, self.weight_values)
 
 
 @dataclass
 class SceneObject:
-    """A mesh in its place in the scene, and the index of its material."""
+    """A mesh in scene coordinates, and the index of its material in `Scene.materials`."""
 
     name: str
     mesh: Mesh
     material: int
 
 
-@dataclass
+@dataclass(repr=False)
 class Scene:
-    """A picture to make. background: 3 reals in [0, 1]. light: unit vector towards the light,
-    scene axes. two_sided: light both sides of surfaces and cull none. interpolation: "linear"
-    (the paper's) or "normalized_edges"."""
+    """A checked scene, ready for the front end.
+
+    width, height: pixels. background: red, green, blue, 0 to 1. light: float64[3], unit vector
+    towards the light, scene axes. two_sided: shade both sides of surfaces, cull no back faces.
+    interpolation: "linear" (the paper's) or "normalized_edges" (see `interpolation`).
+    """
 
     name: str
     width: int
@@ -134,18 +143,27 @@ class Scene:
     objects: list[SceneObject]
     materials: list[Material] = field(default_factory=lambda: [Material()])
 
+    def __repr__(self) -> str:
+        triangles = sum(len(item.mesh.faces) for item in self.objects)
+        return (
+            f"Scene({self.name}, {self.width}x{self.height}, objects: {len(self.objects)}, "
+            f"triangles: {triangles}, materials: {len(self.materials)})"
+        )
+
 
 def bundled_scenes() -> list[str]:
-    """The names of the scenes that come with the project."""
+    """Sorted names of the scenes that come with the project."""
     return sorted(p.stem for p in SCENES.glob("*.toml"))
 
 
 def load_scene(
-    name_or_path, size: tuple[int, int] | None = None, config: Config = DEFAULT
+    name_or_path: str | Path, size: tuple[int, int] | None = None, config: Config = DEFAULT
 ) -> Scene:
-    """Load a bundled scene by name, a scene file (.toml), or a mesh file, framed and lit.
+    """Load a bundled scene (by name), a scene file (.toml) or a mesh file.
 
-    size: (width, height) in pixels in place of the scene's own. Raises InputError.
+    A mesh file gets the default camera, light and material. size: (width, height) in pixels,
+    overrides the scene's size. config: limits of the size and of the number of materials. Raises
+    InputError.
     """
     name = str(name_or_path)
     if name in bundled_scenes():
@@ -168,10 +186,10 @@ def load_scene(
     raise InputError(f"{name}: neither a scene (.toml) nor a mesh ({', '.join(MESH_SUFFIXES)})")
 
 
-def _mesh_scene(path: Path, size, config: Config) -> Scene:
-    """A scene of nothing but a mesh file."""
+def _mesh_scene(path: Path, size: tuple[int, int] | None, config: Config) -> Scene:
+    """A scene that shows one mesh file with the default camera, light and material."""
     mesh = load_mesh(path)
-    # Printers' files have z up; the others, y.
+    # In STL files (3D printing) z usually points up; in the other formats, y.
     table = {} if path.suffix.lower() == ".stl" else {"up": [0.0, 1.0, 0.0]}
     if "up" in table:
         table["direction"] = [0.35, 0.35, 1.0]
@@ -185,19 +203,20 @@ def _mesh_scene(path: Path, size, config: Config) -> Scene:
         DEFAULT_BACKGROUND,
         camera,
         _light(root.table("light"), camera),
-        # Faces that wind both ways hide at random if they are culled by their winding.
+        # Two-sided if the winding is mixed: culling by winding would hide visible faces at random.
         not is_consistent(mesh),
         "linear",
         [SceneObject(path.stem, mesh, 0)],
     )
 
 
-def _scene(root: _Table, path: Path, size, config: Config) -> Scene:
+def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Config) -> Scene:
     width, height = _size(root, size, config)
     background = root.reals("background", 3, DEFAULT_BACKGROUND, 0.0, 1.0)
     two_sided = root.boolean("two_sided", False)
     interpolation = root.choice("interpolation", INTERPOLATIONS, "linear")
-    materials, indices = [], {}
+    materials: list[Material] = []
+    indices: dict[str | None, int] = {}
     for name, table in root.tables_by_name("materials"):
         indices[name] = len(materials)
         materials.append(_material(table))
@@ -244,9 +263,10 @@ def _read_toml(path: Path) -> dict:
         raise InputError(f"{path}: malformed TOML: {message}") from None
 
 
-def _size(root: _Table, size, config: Config) -> tuple[int, int]:
-    own = root.value("size", None)
-    for where, value in ((root.where("size"), own), ("size", size)):
+def _size(root: _Table, size: tuple[int, int] | None, config: Config) -> tuple[int, int]:
+    """(width, height) in pixels: `size`, else the scene file's, else the default."""
+    in_file = root.value("size", None)
+    for where, value in ((root.where("size"), in_file), ("size", size)):
         if value is None:
             continue
         whole = isinstance(value, (list, tuple)) and all(type(v) is int for v in value)
@@ -256,7 +276,7 @@ def _size(root: _Table, size, config: Config) -> tuple[int, int]:
             raise InputError(
                 f"{where} = {value[0]}x{value[1]} is outside 1 to {config.max_size} pixels"
             )
-    return tuple(size or own or DEFAULT_SIZE)
+    return tuple(size or in_file or DEFAULT_SIZE)
 
 
 def _material(table: _Table) -> Material:
@@ -274,7 +294,7 @@ def _material(table: _Table) -> Material:
 
 
 def _weight(table: _Table) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """W as increasing Zn and values; both empty if the table does not give it."""
+    """W as increasing Zn and values there; both empty if the table has no W."""
     value = table.value("W", None)
     if value is None:
         return (), ()
@@ -287,7 +307,7 @@ def _weight(table: _Table) -> tuple[tuple[float, ...], tuple[float, ...]]:
             raise table.error("W", f"{len(degrees)} degrees, but {len(values)} values")
         if np.any(np.diff(degrees) <= 0):
             raise inner.error("degrees", f"= {_show(degrees)} do not increase")
-        # cos(90 degrees) is not quite 0 in floating point.
+        # In floating point cos(90 degrees) is not exactly 0.
         zn = [0.0 if i == 90.0 else math.cos(math.radians(i)) for i in degrees]
         return tuple(zn[::-1]), tuple(values[::-1])
     if isinstance(value, list):
@@ -299,7 +319,13 @@ def _weight(table: _Table) -> tuple[tuple[float, ...], tuple[float, ...]]:
     return (0.0, 1.0), (constant, constant)
 
 
-def _object(table: _Table, number: int, path: Path, materials, indices) -> SceneObject:
+def _object(
+    table: _Table,
+    number: int,
+    path: Path,
+    materials: list[Material],
+    indices: dict[str | None, int],
+) -> SceneObject:
     shape = table.choice("shape", tuple(SHAPES), None)
     file = table.text("mesh", None)
     label = table.text("name", shape or file or f"object {number}")
@@ -324,11 +350,11 @@ def _object(table: _Table, number: int, path: Path, materials, indices) -> Scene
         table.reals("rotate", 3, (0.0, 0.0, 0.0)),
         table.reals("translate", 3, (0.0, 0.0, 0.0)),
     )
-    wanted = table.value("material", None)
-    if isinstance(wanted, dict):
-        materials.append(_material(table.child("material", wanted)))
+    reference = table.value("material", None)
+    if isinstance(reference, dict):
+        materials.append(_material(table.child("material", reference)))
         index = len(materials) - 1
-    elif wanted is None:
+    elif reference is None:
         index = indices.setdefault(None, len(materials))
         if index == len(materials):
             materials.append(Material())
@@ -336,14 +362,14 @@ def _object(table: _Table, number: int, path: Path, materials, indices) -> Scene
         name = table.text("material", None)
         if name not in indices:
             known = ", ".join(k for k in indices if k) or "none"
-            raise table.error("material", f"= {_show(name)} is not in [materials] (there: {known})")
+            raise table.error("material", f"= {_show(name)} is not in [materials] (known: {known})")
         index = indices[name]
     table.finish()
     return SceneObject(label, mesh, index)
 
 
 def _shape(table: _Table, shape: str) -> Mesh:
-    """Make a shape; its keys in the file are the parameters of its function."""
+    """The mesh of a shape. The parameters of the shape's function are keys of the table."""
     arguments = {}
     for name, parameter in inspect.signature(SHAPES[shape]).parameters.items():
         if isinstance(parameter.default, int):
@@ -359,7 +385,10 @@ def _shape(table: _Table, shape: str) -> Mesh:
 
 
 def _camera(table: _Table, points: np.ndarray, aspect: float) -> Camera:
-    """The camera of a table; what it leaves open is chosen so that `points` fill the picture."""
+    """The camera of a [camera] table. Missing keys are chosen so that `points` fill the picture.
+
+    points: float64[V, 3], all vertices of the scene. aspect: width / height.
+    """
     projection = table.choice("projection", ("orthographic", "perspective"), "orthographic")
     perspective = projection == "perspective"
     eye, direction = table.reals("eye", 3, None), table.reals("direction", 3, None)
@@ -395,7 +424,8 @@ def _camera(table: _Table, points: np.ndarray, aspect: float) -> Camera:
     if axes is None:
         if up is not None:
             raise table.error("up", f"= {_show(up)} is parallel to the line of sight")
-        axes = view_axes(back, (0.0, 1.0, 0.0))  # from straight above, with the default up
+        axes = view_axes(back, (0.0, 1.0, 0.0))  # the camera looks along the default `up`
+        assert axes is not None
 
     if perspective:
         fov = fov or DEFAULT_FOV
@@ -410,7 +440,7 @@ def _camera(table: _Table, points: np.ndarray, aspect: float) -> Camera:
 
 
 def _light(table: _Table, camera: Camera) -> np.ndarray:
-    """Unit vector towards the light, in the scene's axes."""
+    """Unit vector towards the light, float64[3], scene axes."""
     direction = table.reals("direction", 3, None)
     relative_to = table.choice("relative_to", ("scene", "camera"), "scene")
     table.finish()
@@ -425,50 +455,59 @@ def _light(table: _Table, camera: Camera) -> np.ndarray:
     return direction / np.linalg.norm(direction)
 
 
-def _show(value) -> str:
-    """`value` on one line, cut if it is long."""
+def _show(value: object) -> str:
+    """`value` on one line of at most 60 characters."""
     text = " ".join(repr(list(value) if isinstance(value, tuple) else value).split())
     return text if len(text) <= 60 else text[:57] + "..."
 
 
 class _Table:
-    """A table of a scene file that hands out checked values, and knows which keys nobody asked
-    for."""
+    """A table of a scene file: returns checked values and remembers which keys were read.
+
+    Every method raises InputError that names the file and the key if a value is wrong. Methods
+    with a `default` return it if the key is missing.
+    """
 
     def __init__(self, values: dict, file: str, prefix: str = ""):
         self.values, self.file, self.prefix = values, file, prefix
         self.known: set[str] = set()
 
     def where(self, key: str) -> str:
-        """File and full name of `key`."""
+        """The file and the full name of `key`, for messages."""
         return f"{self.file}: {self.prefix}{key}".removesuffix(".")
 
-    def error(self, key: str, what: str) -> InputError:
-        return InputError(f"{self.where(key)} {what}".replace(" : ", ": "))
+    def error(self, key: str, message: str) -> InputError:
+        """An InputError about `key`."""
+        return InputError(f"{self.where(key)} {message}".replace(" : ", ": "))
 
-    def value(self, key: str, default):
+    def value(self, key: str, default: object) -> Any:
+        """The unchecked value of `key`."""
         self.known.add(key)
         return self.values.get(key, default)
 
-    def child(self, key: str, values) -> _Table:
+    def child(self, key: str, values: object) -> _Table:
+        """`values` of `key` as a table."""
         if not isinstance(values, dict):
             raise self.error(key, f"= {_show(values)} is not a table")
         return _Table(values, self.file, f"{self.prefix}{key}.")
 
     def table(self, key: str) -> _Table:
+        """The table `key`, empty if missing."""
         return self.child(key, self.value(key, {}))
 
     def tables_by_name(self, key: str) -> list[tuple[str, _Table]]:
+        """(name, table) of every table [key.name]."""
         outer = self.table(key)
         return [(name, outer.child(name, value)) for name, value in outer.values.items()]
 
     def list_of_tables(self, key: str) -> list[_Table]:
+        """The tables [[key]]."""
         value = self.value(key, [])
         if not isinstance(value, list):
             raise self.error(key, "is not a list of tables: write [[objects]]")
         return [self.child(f"{key}[{i}]", v) for i, v in enumerate(value)]
 
-    def _number(self, key: str, value, low: float, high: float) -> float:
+    def _number(self, key: str, value: object, low: float, high: float) -> float:
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise self.error(key, f"= {_show(value)} is not a number")
         if not math.isfinite(value):
@@ -477,23 +516,34 @@ class _Table:
             raise self.error(key, f"= {value:g} is outside [{low:g}, {high:g}]")
         return float(value)
 
-    def real(self, key: str, default, low: float = -1e30, high: float = 1e30):
+    def real(self, key: str, default: float | None, low: float = -1e30, high: float = 1e30) -> Any:
+        """A real number from `low` to `high`."""
         value = self.value(key, None)
         return default if value is None else self._number(key, value, low, high)
 
     def whole(self, key: str, default: int, low: int, high: int) -> int:
+        """A whole number from `low` to `high`."""
         value = self.value(key, default)
         if type(value) is not int:
             raise self.error(key, f"= {_show(value)} is not a whole number")
         return int(self._number(key, value, low, high))
 
     def list_of_reals(self, key: str, low: float = -1e30, high: float = 1e30) -> list[float]:
+        """A list of at least one real number from `low` to `high`."""
         value = self.value(key, None)
         if not isinstance(value, list) or not value:
             raise self.error(key, f"= {_show(value)} is not a list of numbers")
         return [self._number(f"{key}[{i}]", v, low, high) for i, v in enumerate(value)]
 
-    def reals(self, key: str, count: int, default=None, low: float = -1e30, high: float = 1e30):
+    def reals(
+        self,
+        key: str,
+        count: int,
+        default: tuple[float, ...] | None = None,
+        low: float = -1e30,
+        high: float = 1e30,
+    ) -> Any:
+        """A tuple of `count` real numbers from `low` to `high`."""
         if self.value(key, None) is None:
             return default
         values = self.list_of_reals(key, low, high)
@@ -502,25 +552,28 @@ class _Table:
         return tuple(values)
 
     def boolean(self, key: str, default: bool) -> bool:
+        """True or False."""
         value = self.value(key, default)
         if not isinstance(value, bool):
             raise self.error(key, f"= {_show(value)} is not true or false")
         return value
 
-    def text(self, key: str, default):
+    def text(self, key: str, default: str | None) -> Any:
+        """A string."""
         value = self.value(key, default)
         if value is not None and not isinstance(value, str):
             raise self.error(key, f"= {_show(value)} is not a string")
         return value
 
-    def choice(self, key: str, choices: tuple[str, ...], default):
+    def choice(self, key: str, choices: tuple[str, ...], default: str | None) -> Any:
+        """One of the strings `choices`."""
         value = self.text(key, default)
         if value is not None and value != default and value not in choices:
             raise self.error(key, f"= {_show(value)} is not one of {', '.join(choices)}")
         return value
 
     def finish(self) -> None:
-        """Raise InputError for the first key that nobody asked for."""
+        """Raise InputError for the first key of the table that no method has read."""
         for key in self.values:
             if key not in self.known:
                 close = difflib.get_close_matches(key, sorted(self.known), 1)

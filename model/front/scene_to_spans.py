@@ -1,20 +1,25 @@
+# SPDX-License-Identifier: MIT
 """The front end: from a scene to the spans, registers and material table of one picture.
 
-Triangles come from the scene's objects, go through the camera, are resolved into visible segments
-by scan line (`visibility`), and each segment becomes a span: the normal at its first dot and the
-step to the next (`interpolation`), in the light frame. Gouraud and flat shading have intensities in
-place of normals, of the vertices or of the face (`vertex_shading`).
+The camera projects the triangles of the scene's objects (`camera`). Hidden surfaces are removed per
+scan line, which leaves visible segments (`visibility`). Each segment becomes a span: the normal at
+its first pixel and the step from pixel to pixel (`interpolation`), in the light frame.
+
+For Gouraud and flat shading a span carries intensities instead of normals: those of the vertices,
+or that of the face. The front end does not know how the hardware shades a vertex; the caller of
+`make_frame` passes a `VertexShader`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
-from phong75.model import vertex_shading
-from phong75.model.config import DEFAULT, Config
+from phong75.model.arrays import ArrayLike, Ints, Reals, Spans
+from phong75.model.config import Config
 from phong75.model.frame import (
     SPAN_DTYPE,
     ExactFrame,
@@ -31,12 +36,28 @@ from phong75.model.front.scene import Scene
 from phong75.model.front.visibility import GRID, Segments, Triangles
 
 
-@dataclass
+class VertexShader(Protocol):
+    """Gives the intensities that Gouraud and flat shading interpolate or hold."""
+
+    def __call__(
+        self, normal: Reals, material: Ints, frame: Frame, exact: ExactFrame, config: Config
+    ) -> tuple[Reals, Reals]:
+        """S of red, green and blue, float64[n, 3], twice: as the hardware of `config` computes S,
+        and by eq. (3) of the paper before any rounding.
+
+        normal: float64[n, 3], unit vectors in the light frame. material: int64[n], rows of the
+        material table. frame, exact: registers and materials in codes and before rounding.
+        """
+        ...
+
+
+@dataclass(repr=False)
 class FrontEnd:
     """What the front end makes of a scene.
 
-    frame: the picture in codes. exact: the same before rounding. triangles: number of triangles
-    of the scene, without `degenerate_triangles`, those left out because they have no area.
+    frame: the picture in codes. exact: the same picture before rounding. triangles: number of
+    triangles in the scene. degenerate_triangles: number of further triangles that were left out
+    because they have no area.
     """
 
     frame: Frame
@@ -44,14 +65,22 @@ class FrontEnd:
     triangles: int
     degenerate_triangles: int
 
+    def __repr__(self) -> str:
+        return f"FrontEnd({self.frame}, triangles: {self.triangles})"
 
-def front_end(
-    scene: Scene, config: Config = DEFAULT, progress: Callable[[float], None] | None = None
+
+def make_frame(
+    scene: Scene,
+    config: Config,
+    shade_vertices: VertexShader,
+    progress: Callable[[float], None] | None = None,
 ) -> FrontEnd:
-    """Make the spans of `scene` for the hardware of `config`.
+    """Make the spans, registers and material table of `scene` for the hardware of `config`.
 
-    progress: called with the part done, 0 to 1, as the work goes on. A scene entirely outside the
-    view gives a frame without spans. Raises InputError if the scene does not fit `config`.
+    shade_vertices: called once if `config.technique` is Gouraud's or flat shading, with all
+    vertices of the scene. progress: called with the part done, 0 to 1, as the work goes on. A scene
+    entirely outside the view gives a frame without spans. Raises InputError if the scene does not
+    fit `config`.
     """
     if not (1 <= scene.width <= config.max_size and 1 <= scene.height <= config.max_size):
         raise InputError(
@@ -70,7 +99,7 @@ def front_end(
         raise InputError(f"{scene.name}: has colours, but the pipeline is built for grey")
     frame_axes, eye = light_frame(scene.light, scene.camera.axes[2])
     frame, exact = _frame(scene, eye, config)
-    triangles = _triangles(scene, frame_axes, frame, exact, config)
+    triangles = _triangles(scene, frame_axes, frame, exact, config, shade_vertices)
 
     parts = []
     for segments, done in visible(triangles, scene.width, scene.height):
@@ -81,16 +110,17 @@ def front_end(
     if parts:
         frame.spans, exact.start, exact.step = map(np.concatenate, zip(*parts, strict=True))
         frame.spans["last"][-1] = True
+    meshes = [o.mesh for o in scene.objects]
     return FrontEnd(
-        frame,
-        exact,
-        sum(len(o.mesh.faces) for o in scene.objects),
-        sum(o.mesh.degenerate for o in scene.objects),
+        frame, exact, sum(len(m.faces) for m in meshes), sum(m.degenerate for m in meshes)
     )
 
 
-def _frame(scene: Scene, eye: np.ndarray, config: Config) -> tuple[Frame, ExactFrame]:
-    """Registers and material table of the picture in codes and before rounding, without spans."""
+def _frame(scene: Scene, eye: Reals, config: Config) -> tuple[Frame, ExactFrame]:
+    """The picture in codes and before rounding, with registers and materials but without spans.
+
+    eye: float64[3], unit vector to the eye in the light frame.
+    """
     table, cp, d, weight, exponent = _materials(scene, config)
     background = np.floor(np.asarray(scene.background) * (2**config.colour_bits - 1) + 0.5)
     frame = Frame(
@@ -98,19 +128,29 @@ def _frame(scene: Scene, eye: np.ndarray, config: Config) -> tuple[Frame, ExactF
         scene.height,
         half_vector_codes(eye, config),
         scene.two_sided,
-        tuple(int(c) for c in background),
+        (int(background[0]), int(background[1]), int(background[2])),
         table,
         np.zeros(0, SPAN_DTYPE),
     )
-    nothing = np.zeros((0, 3))
-    return frame, ExactFrame(nothing, nothing, eye, cp, d, weight, exponent)
+    no_rows = np.zeros((0, 3))
+    return frame, ExactFrame(no_rows, no_rows, eye, cp, d, weight, exponent)
 
 
 def _triangles(
-    scene: Scene, frame_axes: np.ndarray, frame: Frame, exact: ExactFrame, config: Config
+    scene: Scene,
+    frame_axes: Reals,
+    frame: Frame,
+    exact: ExactFrame,
+    config: Config,
+    shade_vertices: VertexShader,
 ) -> Triangles:
-    """All triangles of the scene that face the eye, on the screen, with what is interpolated:
-    normals in the light frame, or intensities as the hardware has them, then exact ones."""
+    """The triangles of the scene that face the eye, projected to the screen.
+
+    `Triangles.value` holds what is interpolated: for Phong's shading the normal in the light frame,
+    float64[T, 3, 3]; else float64[T, 3, 6], the intensities of red, green, blue as the hardware
+    computes them and then the exact ones. frame_axes: float64[3, 3], rows are the axes of the light
+    frame in world coordinates.
+    """
     meshes = [o.mesh for o in scene.objects]
     points = np.concatenate([m.vertices[m.faces] for m in meshes])
     if config.technique == "flat":
@@ -121,10 +161,8 @@ def _triangles(
     value = normalize(apply_matrix(frame_axes, normal))
     material = np.repeat([o.material for o in scene.objects], [len(m.faces) for m in meshes])
     if config.technique != "phong":
-        given = value.reshape(-1, 3), np.repeat(material, 3)
-        rounded = vertex_shading.intensities(*given, frame, config)
-        ideal = vertex_shading.exact_intensities(*given, exact, scene.two_sided)
-        value = np.concatenate([rounded, ideal], axis=-1).reshape(-1, 3, 6)
+        both = shade_vertices(value.reshape(-1, 3), np.repeat(material, 3), frame, exact, config)
+        value = np.concatenate(both, axis=-1).reshape(-1, 3, 6)
     corners = scene.camera.project(points, scene.width, scene.height)
     corners, value, material = visibility.clip(corners, value, material, scene.camera.near)
     w = corners[..., 2]
@@ -138,16 +176,19 @@ def _triangles(
     )
 
 
-def visible(triangles: Triangles, width: int, height: int):
-    """Yield the visible segments of one band of scan lines after the other, from the top, with
-    the part of the picture done; bands are cut so that memory stays bounded."""
+def visible(triangles: Triangles, width: int, height: int) -> Iterator[tuple[Segments, float]]:
+    """Yield the visible segments of a picture, one band of scan lines after the other from the top.
+
+    width, height: of the picture, in pixels. The second item is the part of the picture done, 0 to
+    1. A band holds at most `visibility.BLOCK_STRIPS` strips, which bounds the memory.
+    """
     first, end = visibility.line_range(triangles, width, height)
     change = np.bincount(first, minlength=height + 1) - np.bincount(end, minlength=height + 1)
     strips = np.cumsum(change)[:height]  # on each line
     top = 0
     while top < height:
-        room = np.count_nonzero(np.cumsum(strips[top:]) <= visibility.BLOCK_STRIPS)
-        lines = min(room, visibility.BLOCK_DOTS // width)
+        room = int(np.count_nonzero(np.cumsum(strips[top:]) <= visibility.BLOCK_STRIPS))
+        lines = min(room, visibility.BLOCK_PIXELS // width)
         bottom = min(top + max(lines, 1), height)
         here = np.flatnonzero((first < bottom) & (end > top))
         part = triangles.take(here)
@@ -155,15 +196,18 @@ def visible(triangles: Triangles, width: int, height: int):
             part, np.maximum(first[here], top), np.minimum(end[here], bottom), width
         )
         ends = (segments.left, segments.right - 1)
-        depth = [_at_dots(part, segments, x, part.depth[..., None])[:, 0] for x in ends]
-        visible = visibility.resolve(segments, np.stack(depth, axis=-1), width)
-        visible.triangle = here[visible.triangle]
-        yield visible, bottom / height
+        depth = [_at_pixels(part, segments, x, part.depth[..., None])[:, 0] for x in ends]
+        resolved = visibility.resolve(segments, np.stack(depth, axis=-1), width)
+        resolved.triangle = here[resolved.triangle]
+        yield resolved, bottom / height
         top = bottom
 
 
-def _at_dots(triangles: Triangles, segments: Segments, x, values, normalize_edges=False):
-    """float64[n, C]: `values` (float64[T, 3, C]) at the centre of dot `x` of each segment."""
+def _at_pixels(
+    triangles: Triangles, segments: Segments, x: Ints, values: Reals, normalize_edges: bool = False
+) -> Reals:
+    """float64[n, C]: `values` (float64[T, 3, C]) at the centre of pixel `x` (int64[n]) of each of
+    the n segments."""
     t = segments.triangle
     weights = scan_line_weights(
         triangles.x[t],
@@ -174,20 +218,25 @@ def _at_dots(triangles: Triangles, segments: Segments, x, values, normalize_edge
     return interpolate(values[t], weights, normalize_edges)
 
 
-def _spans(triangles: Triangles, segments: Segments, config: Config, interpolation: str):
-    """SPAN_DTYPE[n] of `segments`, and start and step before rounding, float64[n, 3] each.
+def _spans(
+    triangles: Triangles, segments: Segments, config: Config, interpolation: str
+) -> tuple[Spans, Reals, Reals]:
+    """The spans SPAN_DTYPE[n] of `segments`, and their start and step before rounding,
+    float64[n, 3] each.
 
-    The step comes from the values at both ends, each a mean of those of the vertices whose weights
-    are sound even in slivers; a gradient over the triangle's plane would not be.
+    The step is the difference between the values at both ends of the segment, divided by the number
+    of steps. Each value is a mean of the vertices' values with weights that are exact even in
+    slivers; a gradient over the triangle's plane would not be.
     """
     ends = [
-        _at_dots(triangles, segments, x, triangles.value, interpolation == "normalized_edges")
+        _at_pixels(triangles, segments, x, triangles.value, interpolation == "normalized_edges")
         for x in (segments.left, segments.right - 1)
     ]
     length = segments.right - segments.left
     start, step = ends[0], (ends[1] - ends[0]) / np.maximum(length - 1, 1)[:, None]
 
-    # A step of +2, from a normal to its opposite in one dot, is no code: single dots instead.
+    # No code holds a step of +2, from a normal to its opposite in one pixel. Such a segment becomes
+    # spans of one pixel each.
     rounded = np.floor(np.ldexp(step[:, :3], config.normal.fraction) + 0.5)
     single = ~np.all(config.normal.contains(rounded), axis=1)
     pieces = np.where(single, length, 1)
@@ -205,20 +254,22 @@ def _spans(triangles: Triangles, segments: Segments, config: Config, interpolati
     return spans, start[:, -3:], step[:, -3:]
 
 
-def encode(start, step, length, config: Config) -> tuple[np.ndarray, np.ndarray]:
-    """Codes int64[n, 3] of `start` and `step` (float64[n, 3]) in `Config.normal`.
+def encode(start: Reals, step: Reals, length: ArrayLike, config: Config) -> tuple[Ints, Ints]:
+    """Codes int64[n, 3] of `start` and of `step` (float64[n, 3] each) in `Config.normal`.
 
-    The step is held where the last of `length` (int[n]) dots, start + (length - 1) step, is a code
-    of the format, too; rounding alone could carry it out. It drifts by (length - 1)/2 LSB at most.
+    length: int[n], pixels of each span. The step is limited so that the value at the last pixel,
+    start + (length - 1) step, is a code of the format; rounding alone could carry the value out.
+    The rounding of the step moves the last pixel by at most (length - 1)/2 LSB.
     """
     steps = np.maximum(np.asarray(length, np.int64) - 1, 1)[:, None]
-    start, step = config.normal.quantize(start), config.normal.quantize(step)
-    lowest = -((start - config.normal.min) // steps)
-    return start, np.clip(step, lowest, (config.normal.max - start) // steps)
+    first, slope = config.normal.quantize(start), config.normal.quantize(step)
+    lowest = -((first - config.normal.min) // steps)
+    return first, np.clip(slope, lowest, (config.normal.max - first) // steps)
 
 
-def _materials(scene: Scene, config: Config):
-    """The material table in codes, and Cp, d, W, n of all its rows before rounding."""
+def _materials(scene: Scene, config: Config) -> tuple[MaterialTable, Reals, Reals, Reals, Reals]:
+    """The material table in codes, and Cp, d, W and n of all its rows before rounding (shapes as
+    in `ExactFrame`)."""
     table = MaterialTable.empty(config)
     cp, d = np.zeros((config.materials, 3)), np.zeros(config.materials)
     weight = np.zeros((config.materials, config.weight_points))

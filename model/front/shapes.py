@@ -1,6 +1,8 @@
-"""The bundled shapes, with exact normals: sphere, torus, cone, pyramid, and the Utah teapot.
+# SPDX-License-Identifier: MIT
+"""Bundled shapes with exact normals: sphere, torus, cone, pyramid and the Utah teapot.
 
-All stand on or around the origin with z up, and wind counter-clockwise seen from outside.
+All shapes are at the origin with z up. Faces are counter-clockwise seen from outside. Lengths are
+in scene units.
 """
 
 from __future__ import annotations
@@ -9,38 +11,44 @@ from pathlib import Path
 
 import numpy as np
 
+from phong75.model.arrays import Flags, Reals
 from phong75.model.front.mesh import Mesh, corner_normals, normalize
 
 TEAPOT_FILE = Path(__file__).parent.parent / "data" / "newell_teapot_patches.txt"
 
 
 def sphere(radius: float = 1.0, segments: int = 64, rings: int = 32) -> Mesh:
-    """A sphere around the origin: `segments` round the z axis, `rings` from pole to pole."""
+    """A sphere around the origin: `segments` around the z axis, `rings` from pole to pole."""
     polar = np.linspace(0.0, np.pi, rings + 1)[:, None]
-    around = _turn(segments)[None, :]
+    azimuth = _full_turn(segments)[None, :]
     unit = np.stack(
         np.broadcast_arrays(
-            np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around), np.cos(polar)
+            np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)
         ),
         axis=-1,
     )
-    unit[0], unit[-1] = (0, 0, 1), (0, 0, -1)  # exact poles: sin(pi) is not quite 0
-    unit[:, -1] = unit[:, 0]  # and an exact seam
+    unit[0], unit[-1] = (0, 0, 1), (0, 0, -1)  # exact poles: sin(pi) is not exactly 0
+    unit[:, -1] = unit[:, 0]  # exact seam
     return _grid_mesh(radius * unit, unit)
 
 
 def torus(radius: float = 1.0, tube: float = 0.4, segments: int = 64, sides: int = 32) -> Mesh:
-    """A torus around the z axis: a `tube` of that radius at `radius` from the axis."""
-    around, across = _turn(segments)[None, :], -_turn(sides)[:, None]
+    """A torus around the z axis: a tube of radius `tube` at distance `radius` from the axis.
+
+    segments: steps around the z axis. sides: steps around the tube.
+    """
+    azimuth, tube_angle = _full_turn(segments)[None, :], -_full_turn(sides)[:, None]
     unit = np.stack(
         np.broadcast_arrays(
-            np.cos(across) * np.cos(around), np.cos(across) * np.sin(around), np.sin(across)
+            np.cos(tube_angle) * np.cos(azimuth),
+            np.cos(tube_angle) * np.sin(azimuth),
+            np.sin(tube_angle),
         ),
         axis=-1,
     )
     unit[-1], unit[:, -1] = unit[0], unit[:, 0]
     centre = np.stack(
-        np.broadcast_arrays(np.cos(around), np.sin(around), np.zeros_like(around)), axis=-1
+        np.broadcast_arrays(np.cos(azimuth), np.sin(azimuth), np.zeros_like(azimuth)), axis=-1
     )
     centre[:, -1] = centre[:, 0]
     return _grid_mesh(radius * centre + tube * unit, unit)
@@ -49,13 +57,13 @@ def torus(radius: float = 1.0, tube: float = 0.4, segments: int = 64, sides: int
 def cone(radius: float = 1.0, height: float = 2.0, segments: int = 16, rings: int = 8) -> Mesh:
     """A cone on the plane z = 0 with its apex at z = `height` (Phong 1975, Fig. 1).
 
-    Normals are those of the true cone; the apex, where it has none, takes in each facet the one
-    of the facet's middle. `rings` cut the flat facets across, ever closer towards the apex, so
-    that this compromise stays near it. The base is a flat disc with a sharp rim.
+    Normals are those of the true cone. The true cone has no normal at the apex; there each facet
+    takes the normal of its middle. `rings` subdivides the facets, more finely towards the apex, so
+    that the wrong normals affect only a small area. The base is a flat disc with a sharp rim.
     """
-    around = _turn(segments)
+    azimuth = _full_turn(segments)
     level = np.linspace(0.0, 1.0, rings + 1)[:, None] ** 2  # 0 at the apex, 1 at the rim
-    circle = np.stack([np.cos(around), np.sin(around)], axis=-1)
+    circle = np.stack([np.cos(azimuth), np.sin(azimuth)], axis=-1)
     circle[-1] = circle[0]
     points = np.empty((rings + 1, segments + 1, 3))
     points[..., :2] = radius * level[..., None] * circle
@@ -63,7 +71,7 @@ def cone(radius: float = 1.0, height: float = 2.0, segments: int = 16, rings: in
     unit = np.empty_like(points)
     unit[..., :2], unit[..., 2] = height * circle, radius
     side = _grid_mesh(points, normalize(unit))
-    middle = around[:-1] + np.pi / segments
+    middle = azimuth[:-1] + np.pi / segments
     slope = np.stack(
         [height * np.cos(middle), height * np.sin(middle), np.full(segments, radius)], axis=-1
     )
@@ -83,9 +91,10 @@ def cone(radius: float = 1.0, height: float = 2.0, segments: int = 16, rings: in
 
 
 def pyramid(width: float = 150.0, height: float = 150.0) -> Mesh:
-    """The square pyramid of the lecture notes' `pyramid.des`, flat faces, sharp edges.
+    """A square pyramid with flat faces and sharp edges, from the lecture notes' `pyramid.des`.
 
-    Vertices as listed there: base from (0, 0, 0) to (width, width, 0), apex above its middle.
+    The vertices are those of the file: base from (0, 0, 0) to (width, width, 0), apex above the
+    middle of the base.
     """
     half = width / 2.0
     vertices = np.array(
@@ -96,10 +105,10 @@ def pyramid(width: float = 150.0, height: float = 150.0) -> Mesh:
 
 
 def teapot(divisions: int = 10) -> Mesh:
-    """The Utah teapot (Newell 1975): 32 bicubic patches, `divisions` by `divisions` quads each.
+    """The Utah teapot (Newell 1975): 32 bicubic patches of `divisions` by `divisions` quads.
 
-    Normals are those of the patches (`patch_surface`), also where a patch closes in a point, at
-    the tip of the lid and the middle of the bottom.
+    Normals are those of the patches (`patch_surface`), including the tip of the lid and the middle
+    of the bottom, where a border of a patch shrinks to a point.
     """
     points, patches = _read_patches()
     grid, normals = patch_surface(points[patches].reshape(-1, 4, 4, 3), divisions)
@@ -108,28 +117,32 @@ def teapot(divisions: int = 10) -> Mesh:
     vertices = np.concatenate([m.vertices for m in meshes])
     offsets = np.cumsum([0] + [len(m.vertices) for m in meshes[:-1]])
     faces = np.concatenate([m.faces + o for m, o in zip(meshes, offsets, strict=True)])
-    # Neighbouring patches compute the points of a common border each for itself, and differ in
-    # the last bit: take one of them for both, or a crack may open. The odd offset keeps points
-    # with few decimals away from where the rounding turns.
-    _, first, place = np.unique(
+    # Two patches compute the points of their common border separately, and the results may differ
+    # in the last bit. One copy replaces both, or a crack may open. The offset 0.3719 keeps
+    # coordinates with few decimals away from the steps of floor.
+    _, first, label = np.unique(
         np.floor(vertices * 1e9 + 0.3719), axis=0, return_index=True, return_inverse=True
     )
     normals = np.concatenate([m.normals for m in meshes])
-    return Mesh(vertices[first], place.reshape(-1)[faces], normals)
+    return Mesh(vertices[first], label.reshape(-1)[faces], normals)
 
 
 def teapot_patch(number: int) -> np.ndarray:
-    """float64[4, 4, 3]: the control points of patch `number` (0 to 31) of the teapot, by u, then v.
+    """Control points float64[4, 4, 3] (indices u, v) of patch `number` (0 to 31) of the teapot.
 
-    0 to 3 are the rim, 4 to 11 the body, 12 to 15 the handle, 16 to 19 the spout, 20 to 27 the lid
-    and 28 to 31 the bottom.
+    Patches 0 to 3 are the rim, 4 to 11 the body, 12 to 15 the handle, 16 to 19 the spout, 20 to 27
+    the lid and 28 to 31 the bottom.
     """
     points, patches = _read_patches()
     return points[patches[number]].reshape(4, 4, 3)
 
 
 def patch_mesh(control: np.ndarray, divisions: int = 10) -> Mesh:
-    """One bicubic patch, float64[4, 4, 3]; vertex (D + 1) j + i has u = i/D, v = j/D."""
+    """The mesh of one bicubic patch with D = `divisions` steps in u and in v.
+
+    control: float64[4, 4, 3], control points, indices u, v. Vertex (D + 1) j + i has u = i/D and
+    v = j/D.
+    """
     grid, normals = patch_surface(control[None], divisions)
     return _grid_mesh(grid[0].swapaxes(0, 1), normals[0].swapaxes(0, 1))
 
@@ -137,25 +150,26 @@ def patch_mesh(control: np.ndarray, divisions: int = 10) -> Mesh:
 def patch_surface(control: np.ndarray, divisions: int) -> tuple[np.ndarray, np.ndarray]:
     """Points and unit normals of bicubic Bezier patches on a regular grid of parameters.
 
-    control: float64[P, 4, 4, 3], by u, then v. Returns two float64[P, D + 1, D + 1, 3],
-    D = `divisions`. The normal is dS/dv x dS/du (Newell's patches then face outward). Where a
-    border shrinks to a point one derivative vanishes, and the normal is the limit along the
-    other parameter: near u = 0, dS/dv = u d2S/dudv.
+    control: float64[P, 4, 4, 3], control points of P patches, indices u, v. Returns (points,
+    normals), float64[P, D + 1, D + 1, 3] each, D = `divisions`. The normal is dS/dv x dS/du, which
+    points outward for Newell's patches. Where a border shrinks to a point, one derivative
+    vanishes; the normal there is the limit along the other parameter: near u = 0,
+    dS/dv = u d2S/dudv.
     """
     t = np.linspace(0.0, 1.0, divisions + 1)
     value, slope = bernstein(t), bernstein_slope(t)
 
-    def surface(in_u, in_v):
+    def surface(in_u: Reals, in_v: Reals) -> Reals:
         return np.einsum("ui,pijc,vj->puvc", in_u, control, in_v)
 
     along_u, along_v = surface(slope, value), surface(value, slope)
     mixed = surface(slope, slope)
     size = np.max(np.abs(control), axis=(1, 2, 3))[:, None, None]
 
-    def vanishes(d):
-        return (np.max(np.abs(d), axis=-1) < 1e-9 * size)[..., None]
+    def vanishes(derivative: Reals) -> Flags:
+        return (np.max(np.abs(derivative), axis=-1) < 1e-9 * size)[..., None]
 
-    # The limit from inside: towards growing u at u = 0, towards falling u at u = 1.
+    # The limit is taken from inside the patch: increasing u at u = 0, decreasing u at u = 1.
     inward_u = np.where(t < 0.5, 1.0, -1.0)[None, :, None, None]
     inward_v = np.where(t < 0.5, 1.0, -1.0)[None, None, :, None]
     du = np.where(vanishes(along_u), inward_v * mixed, along_u)
@@ -164,7 +178,7 @@ def patch_surface(control: np.ndarray, divisions: int) -> tuple[np.ndarray, np.n
 
 
 def _read_patches() -> tuple[np.ndarray, np.ndarray]:
-    """Control points float64[N, 3] and patches int64[P, 16] (rows of indices) of the teapot."""
+    """Control points float64[N, 3] of the teapot, and the indices of each patch, int64[P, 16]."""
     lines = [
         line for line in TEAPOT_FILE.read_text(encoding="ascii").splitlines() if line[0] != "#"
     ]
@@ -176,26 +190,28 @@ def _read_patches() -> tuple[np.ndarray, np.ndarray]:
 
 
 def bernstein(t: np.ndarray) -> np.ndarray:
-    """float64[T, 4]: the cubic Bernstein polynomials at `t` (float64[T])."""
+    """The four cubic Bernstein polynomials at `t` (float64[T]), float64[T, 4]."""
     s = 1.0 - t
     return np.stack([s**3, 3 * t * s**2, 3 * t**2 * s, t**3], axis=-1)
 
 
 def bernstein_slope(t: np.ndarray) -> np.ndarray:
-    """float64[T, 4]: their derivatives."""
+    """Derivatives of the cubic Bernstein polynomials at `t` (float64[T]), float64[T, 4]."""
     s = 1.0 - t
     return np.stack([-3 * s**2, 3 * s**2 - 6 * t * s, 6 * t * s - 3 * t**2, 3 * t**2], axis=-1)
 
 
-def _turn(steps: int) -> np.ndarray:
-    """float64[steps + 1]: angles from 0 to a full turn, both ends included."""
+def _full_turn(steps: int) -> np.ndarray:
+    """Angles from 0 to 2 pi in radians, both ends included, float64[steps + 1]."""
     return np.linspace(0.0, 2.0 * np.pi, steps + 1)
 
 
 def _grid_mesh(points: np.ndarray, normals: np.ndarray) -> Mesh:
-    """Two triangles for each cell of a grid of points float64[R, C, 3] with unit normals of the
-    same shape; columns run counter-clockwise and rows downward, seen from outside. Triangles
-    that collapse, at a pole, are left out."""
+    """Mesh of a grid of points, two triangles per cell; triangles without area are left out.
+
+    points, normals: float64[R, C, 3], unit normals. Seen from outside, columns go to the right and
+    rows downward. Triangles without area occur at poles.
+    """
     rows, columns = points.shape[:2]
     index = np.arange(rows * columns).reshape(rows, columns)
     a, b = index[:-1, :-1].reshape(-1), index[:-1, 1:].reshape(-1)

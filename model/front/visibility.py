@@ -1,19 +1,21 @@
-"""From projected triangles to visible segments, scan line by scan line.
+# SPDX-License-Identifier: MIT
+"""Visible surfaces: from projected triangles to visible segments, scan line by scan line.
 
 Watkins (1970) "computes which polygons intersect the scan line, and then computes the visible
 segment of each polygon, where this segment is the visible strip of the polygon, one screen
-resolution unit in height, that lies on the scan line"; so each screen dot is made once. Here:
+resolution unit in height, that lies on the scan line". So each pixel is shaded exactly once. The
+steps:
 
-- `clip` cuts off what lies behind the near plane or absurdly far off the screen;
-- `set_up` snaps vertices to a grid, culls back faces and orders vertices from top to bottom;
-- `cover` finds the strip of each triangle on each scan line, exactly, in integers;
-- `resolve` finds what is visible of the strips. A strip that meets no other on its line is
-  visible as it is; where several lie over each other the nearest at each dot wins, so that
-  triangles may penetrate each other, and runs of dots of one triangle are segments again.
+- `clip` removes what is behind the near plane or outside the guard band.
+- `set_up` snaps vertices to a grid, culls back faces and sorts vertices from top to bottom.
+- `cover` computes the strip of each triangle on each scan line, exactly, in integers.
+- `resolve` finds the visible parts of the strips. A strip that overlaps no other on its line is
+  visible as a whole. Where strips overlap, the nearest one wins at each pixel, so that triangles
+  may penetrate each other. A run of pixels of one triangle becomes a segment.
 
-Top-left rule with pixel centres at +1/2: a dot whose centre is on an edge belongs to the triangle
-below or to the right of it. Both neighbours compute the crossing of a common edge from the same
-integers, hence no gap and no dot twice.
+Top-left rule with pixel centres at +1/2: a pixel whose centre is on an edge belongs to the
+triangle below or to the right of the edge. Two triangles compute the crossing of their common edge
+from the same integers. Hence there is no gap, and no pixel is covered twice.
 """
 
 from __future__ import annotations
@@ -22,27 +24,30 @@ from dataclasses import dataclass
 
 import numpy as np
 
-#: Vertices are snapped to 2**-12 pixel: far below what can be seen, and all products of
+from phong75.model.arrays import Flags, Ints, Reals
+
+#: Vertices are snapped to multiples of 2**-12 pixel. The shift is invisible, and all products of
 #: coordinates within the guard band stay below 2**63.
 SUBPIXEL_BITS = 12
 GRID = 1 << SUBPIXEL_BITS
 
-#: Triangles are clipped at this distance from the screen, in pixels; nearer parts off the screen
-#: are left out when lines are covered, which needs no new vertices.
+#: Guard band: triangles are clipped at this distance from the screen, in pixels. Parts within the
+#: band but off the screen need no clipping; `cover` leaves them out.
 GUARD = 1 << 16
 
-#: Sizes of the blocks in which lines are covered and dots resolved; they bound the memory.
+#: Strips and pixels that are processed at a time; these limits bound the memory.
 BLOCK_STRIPS = 1 << 19
-BLOCK_DOTS = 1 << 21
+BLOCK_PIXELS = 1 << 21
 
 
 @dataclass
 class Triangles:
-    """Triangles ready for scanning, vertices ordered from top to bottom.
+    """Triangles on the screen, vertices sorted from top to bottom.
 
-    x, y: int64[T, 3], screen coordinates in 1/GRID pixel. depth: float64[T, 3], growing away from
-    the eye, linear over the screen. value: float64[T, 3, C], what is interpolated, a normal or
-    intensities. material: int64[T].
+    x, y: int64[T, 3], screen coordinates in units of 1/GRID pixel.
+    depth: float64[T, 3], see `Camera.depth`.
+    value: float64[T, 3, C], the vector to interpolate: a normal or intensities.
+    material: int64[T], index of the material.
     """
 
     x: np.ndarray
@@ -54,7 +59,7 @@ class Triangles:
     def __len__(self) -> int:
         return len(self.x)
 
-    def take(self, which) -> Triangles:
+    def take(self, which: Ints | Flags) -> Triangles:
         """The triangles selected by `which` (a mask or indices)."""
         return Triangles(
             self.x[which],
@@ -67,7 +72,10 @@ class Triangles:
 
 @dataclass
 class Segments:
-    """Strips of triangles, one dot high: dots left <= x < right of line y. int64[n] each."""
+    """Strips of triangles, one pixel high: the pixels left <= x < right of scan line y.
+
+    triangle: index of the triangle. All arrays are int64[n].
+    """
 
     triangle: np.ndarray
     y: np.ndarray
@@ -77,18 +85,19 @@ class Segments:
     def __len__(self) -> int:
         return len(self.y)
 
-    def take(self, which) -> Segments:
+    def take(self, which: Ints | Flags) -> Segments:
         """The segments selected by `which` (a mask or indices)."""
         return Segments(self.triangle[which], self.y[which], self.left[which], self.right[which])
 
 
-def clip(corners: np.ndarray, value: np.ndarray, material: np.ndarray, near: float):
-    """Cut triangles at the near plane w = `near` and at the guard band round the screen.
+def clip(corners: Reals, value: Reals, material: Ints, near: float) -> tuple[Reals, Reals, Ints]:
+    """Clip triangles at the near plane w = `near` and at the guard band around the screen.
 
-    corners: float64[T, 3, 4], homogeneous screen points (X, Y, w, z) of `Camera.project`; value:
-    float64[T, 3, C]; material: int[T]. Returns the same three for the triangles that remain; a
-    triangle may become two (Sutherland and Hodgman 1974, one plane after the other). Neighbours
-    cut a common edge from the same end with the same arithmetic, at the same point.
+    corners: float64[T, 3, 4], homogeneous screen points (X, Y, w, z) of `Camera.project`. value:
+    float64[T, 3, C]. material: int[T]. Returns (corners, value, material) of the triangles that
+    remain. A triangle may become two (Sutherland and Hodgman 1974, one plane after the other). Two
+    triangles cut their common edge from the same end with the same arithmetic, hence at the same
+    point.
     """
     values = np.concatenate([corners, value], axis=-1)
     planes = [
@@ -105,14 +114,14 @@ def clip(corners: np.ndarray, value: np.ndarray, material: np.ndarray, near: flo
         if np.all(count == 3):
             continue
         whole, one, two = count == 3, count == 1, count == 2
-        # Turn the odd corner out (the only one inside, or the only one outside) to the front.
-        odd = np.where(one, np.argmax(inside, axis=1), np.argmin(inside, axis=1))
-        turn = (odd[:, None] + np.arange(3)) % 3
+        # Rotate the corners so that the single one (inside or outside) comes first.
+        single = np.where(one, np.argmax(inside, axis=1), np.argmin(inside, axis=1))
+        rotation = (single[:, None] + np.arange(3)) % 3
         row = np.arange(len(values))[:, None]
-        turned, reach = values[row, turn], distance[row, turn]
-        t, r = turned[one], reach[one]
+        rotated, reach = values[row, rotation], distance[row, rotation]
+        t, r = rotated[one], reach[one]
         tip = np.stack([t[:, 0], _cut(t, r, 0, 1), _cut(t, r, 0, 2)], axis=1)
-        t, r = turned[two], reach[two]
+        t, r = rotated[two], reach[two]
         p, q = _cut(t, r, 1, 0), _cut(t, r, 2, 0)
         quad = np.stack([p, t[:, 1], t[:, 2], p, t[:, 2], q], axis=1)
         quad = quad.reshape(-1, 3, values.shape[-1])
@@ -122,49 +131,60 @@ def clip(corners: np.ndarray, value: np.ndarray, material: np.ndarray, near: flo
 
 
 def _cut(values: np.ndarray, distance: np.ndarray, inner: int, outer: int) -> np.ndarray:
-    """The point on the plane between corners `inner` and `outer` of each triangle."""
+    """The point where the edge from corner `inner` to corner `outer` meets the plane.
+
+    values: float64[n, 3, C]. distance: float64[n, 3], signed distances from the plane, >= 0 inside.
+    Returns float64[n, C].
+    """
     t = distance[:, inner] / (distance[:, inner] - distance[:, outer])
     return values[:, inner] + t[:, None] * (values[:, outer] - values[:, inner])
 
 
-def set_up(x, y, depth, value, material, two_sided: bool) -> Triangles:
-    """Snap to the grid, drop back faces (unless `two_sided`) and what has no area on the screen.
+def set_up(
+    x: Reals, y: Reals, depth: Reals, value: Reals, material: Ints, two_sided: bool
+) -> Triangles:
+    """Snap vertices to the grid; drop back faces (unless `two_sided`) and faces without area.
 
-    x, y: float64[T, 3], pixels, counter-clockwise seen from outside (with y down: negative area);
-    the others as in `Triangles`, vertices in the same order. |x|, |y| at most about GUARD.
+    x, y: float64[T, 3], pixels, magnitudes up to about GUARD. Front faces are counter-clockwise,
+    which is a negative area with y downward. depth, value, material: see `Triangles`, vertices in
+    the order of x and y.
     """
-    x, y = (np.floor(c * GRID + 0.5).astype(np.int64) for c in (x, y))
-    area = (x[:, 1] - x[:, 0]) * (y[:, 2] - y[:, 0]) - (x[:, 2] - x[:, 0]) * (y[:, 1] - y[:, 0])
+    gx, gy = (np.floor(c * GRID + 0.5).astype(np.int64) for c in (x, y))
+    area = (gx[:, 1] - gx[:, 0]) * (gy[:, 2] - gy[:, 0])
+    area -= (gx[:, 2] - gx[:, 0]) * (gy[:, 1] - gy[:, 0])
     keep = np.flatnonzero(area != 0 if two_sided else area < 0)
-    order = np.argsort(y[keep], axis=1, kind="stable")
+    order = np.argsort(gy[keep], axis=1, kind="stable")
     row = keep[:, None]
     return Triangles(
-        x[row, order], y[row, order], depth[row, order], value[row, order], material[keep]
+        gx[row, order], gy[row, order], depth[row, order], value[row, order], material[keep]
     )
 
 
 def line_range(triangles: Triangles, width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
-    """int64[T] each: the first scan line of each triangle and the one after its last, in
-    0..height: those with the line's centre y at or below the top and above the bottom vertex.
-    Triangles that lie beside the screen get none."""
+    """First scan line of each triangle and the line after its last, int64[T] each, 0 to height.
+
+    A triangle covers the lines whose centre is at or below its top vertex and above its bottom
+    vertex. A triangle beside the screen gets no line.
+    """
     first = np.clip(_first_centre(triangles.y[:, 0]), 0, height)
     end = np.clip(_first_centre(triangles.y[:, 2]), 0, height)
-    beside = (triangles.x.max(axis=1) < 0) | (triangles.x.min(axis=1) > width * GRID)
-    return first, np.where(beside, first, np.maximum(end, first))
+    off_screen = (triangles.x.max(axis=1) < 0) | (triangles.x.min(axis=1) > width * GRID)
+    return first, np.where(off_screen, first, np.maximum(end, first))
 
 
 def _first_centre(coordinate: np.ndarray) -> np.ndarray:
-    """The first pixel whose centre is at or after a grid `coordinate`."""
+    """The first pixel whose centre is at or after `coordinate` (1/GRID pixel)."""
     return -((GRID // 2 - coordinate) // GRID)
 
 
-def cover(triangles: Triangles, first, end, width: int) -> Segments:
-    """The strips of triangles on the scan lines first <= y < end (int64[T] each, within those of
-    `line_range`), cut to 0 <= x < width; strips without a dot are left out.
+def cover(triangles: Triangles, first: Ints, end: Ints, width: int) -> Segments:
+    """The strips of triangles on the scan lines first <= y < end, within 0 <= x < width.
 
-    On the line with its centre at y, an edge from (xa, ya) to (xb, yb) is crossed at
-    xa + (y - ya)(xb - xa)/(yb - ya). The first dot at or after the crossing follows by one integer
-    division, exactly; the strip runs from that of the left edge to that of the right.
+    first, end: int64[T], within the lines of `line_range`. Strips without a pixel are left out.
+    A scan line with its centre at y crosses the edge from (xa, ya) to (xb, yb) at
+    x = xa + (y - ya)(xb - xa)/(yb - ya). One exact integer division gives the first pixel at or
+    after the crossing. A strip goes from that pixel of its left edge to the pixel before that of
+    its right edge.
     """
     lines = end - first
     t = np.repeat(np.arange(len(lines)), lines)
@@ -186,72 +206,78 @@ def cover(triangles: Triangles, first, end, width: int) -> Segments:
     return Segments(t, line, left, right).take(left < right)
 
 
-def _crossing(xa, ya, xb, yb, y) -> np.ndarray:
-    """The first dot whose centre is at or right of the edge a-b (ya < yb) at height `y`."""
+def _crossing(xa: Ints, ya: Ints, xb: Ints, yb: Ints, y: Ints) -> Ints:
+    """The first pixel whose centre is on or to the right of the edge a-b (ya < yb) at height `y`.
+
+    All coordinates are int64[n] in 1/GRID pixel; the result is in pixels.
+    """
     rise = yb - ya
     reach = (xa - GRID // 2) * rise + (y - ya) * (xb - xa)
     return -((-reach) // (GRID * rise))
 
 
 def resolve(segments: Segments, depth: np.ndarray, width: int) -> Segments:
-    """The visible parts of `segments`, ordered by y, then x.
+    """The visible parts of `segments`, sorted by y, then x.
 
-    depth: float64[n, 2], at the first and the last dot of each. Equal depths go to the segment
-    that comes first, which is that of the triangle with the smaller index.
+    depth: float64[n, 2], depth at the first and at the last pixel of each segment. At equal depth
+    the earlier segment wins, which is the one of the triangle with the smaller index.
     """
     if not len(segments):
         return segments
     start = segments.y * width + segments.left
     end = segments.y * width + segments.right
     order = np.argsort(start, kind="stable")
-    # Segments overlap nobody if they begin after all before them and end before the next begins.
+    # A segment overlaps no other if all earlier ones end before it and the next begins after it.
     reach = np.maximum.accumulate(end[order])
-    begins_free = np.concatenate([[True], start[order][1:] >= reach[:-1]])
-    ends_free = np.concatenate([begins_free[1:], [True]])
+    free_before = np.concatenate([[True], start[order][1:] >= reach[:-1]])
+    free_after = np.concatenate([free_before[1:], [True]])
     free = np.empty(len(order), bool)
-    free[order] = begins_free & ends_free
+    free[order] = free_before & free_after
     if free.all():
         return segments.take(order)
 
     alone = segments.take(free)
-    rest = _nearest_runs(segments.take(~free), depth[~free], width)
-    both = Segments(
-        np.concatenate([alone.triangle, rest.triangle]),
-        np.concatenate([alone.y, rest.y]),
-        np.concatenate([alone.left, rest.left]),
-        np.concatenate([alone.right, rest.right]),
+    overlapping = _nearest_runs(segments.take(~free), depth[~free], width)
+    visible = Segments(
+        np.concatenate([alone.triangle, overlapping.triangle]),
+        np.concatenate([alone.y, overlapping.y]),
+        np.concatenate([alone.left, overlapping.left]),
+        np.concatenate([alone.right, overlapping.right]),
     )
-    return both.take(np.argsort(both.y * width + both.left, kind="stable"))
+    return visible.take(np.argsort(visible.y * width + visible.left, kind="stable"))
 
 
 def _nearest_runs(segments: Segments, depth: np.ndarray, width: int) -> Segments:
-    """Resolve dot by dot: the nearest segment owns a dot, a run of dots of one owner is visible."""
+    """Visible runs of overlapping `segments`: the nearest segment owns a pixel.
+
+    A run is the longest sequence of pixels on a line with one owner. Arguments as for `resolve`.
+    """
     top = int(segments.y.min())
-    dots = (int(segments.y.max()) - top + 1) * width
-    nearest = np.full(dots, np.inf)
-    nobody = len(segments)
-    owner = np.full(dots, nobody)
+    pixels = (int(segments.y.max()) - top + 1) * width
+    nearest = np.full(pixels, np.inf)
+    none = len(segments)
+    owner = np.full(pixels, none)
     length = segments.right - segments.left
     total = np.cumsum(length)
     slope = (depth[:, 1] - depth[:, 0]) / np.maximum(length - 1, 1)
     begin = 0
     while begin < len(segments):
         done = total[begin - 1] if begin else 0
-        stop = max(int(np.searchsorted(total, done + BLOCK_DOTS, "right")), begin + 1)
+        stop = max(int(np.searchsorted(total, done + BLOCK_PIXELS, "right")), begin + 1)
         s = np.repeat(np.arange(begin, stop), length[begin:stop])
-        along = np.arange(len(s)) - (total[s] - length[s] - done)
-        dot = (segments.y[s] - top) * width + segments.left[s] + along
-        here = depth[s, 0] + slope[s] * along
-        before = nearest[dot]
-        np.minimum.at(nearest, dot, here)
-        after = nearest[dot]
-        owner[dot[after < before]] = nobody
+        step = np.arange(len(s)) - (total[s] - length[s] - done)
+        pixel = (segments.y[s] - top) * width + segments.left[s] + step
+        here = depth[s, 0] + slope[s] * step
+        before = nearest[pixel]
+        np.minimum.at(nearest, pixel, here)
+        after = nearest[pixel]
+        owner[pixel[after < before]] = none
         wins = here == after
-        np.minimum.at(owner, dot[wins], s[wins])
+        np.minimum.at(owner, pixel[wins], s[wins])
         begin = stop
     first = np.flatnonzero(np.concatenate([[True], owner[1:] != owner[:-1]]))
-    last = np.concatenate([first[1:], [dots]])
-    owned = owner[first] != nobody
-    first, last = first[owned], last[owned]
+    end = np.concatenate([first[1:], [pixels]])
+    owned = owner[first] != none
+    first, end = first[owned], end[owned]
     y = first // width
-    return Segments(segments.triangle[owner[first]], y + top, first - y * width, last - y * width)
+    return Segments(segments.triangle[owner[first]], y + top, first - y * width, end - y * width)

@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: MIT
 """Studies: corner cases, worst cases, methods, true surfaces."""

@@ -1,10 +1,16 @@
-"""The input with the largest error: a search for it, and the worst inputs found so far.
+# SPDX-License-Identifier: MIT
+"""Adversarial search: the input with the largest error, and the worst inputs found so far.
 
-The error of a code is the error of S before the final rounding and what that rounding adds, up to
-1/2 LSB. So the search drives |255 S - its exact value| up over normals, directions of the eye,
-exponents and coefficients: hypothesis first, then a hill-climb of many points at once; at the end
-Cp d, which moves S without an error of its own, is tried at every value, so that S falls just on
-the wrong side of a half. The worst of each family stands in data/adversarial.json as integers.
+The error of a colour code has two parts: the error of S before the final rounding, and the final
+rounding itself, up to 1/2 LSB. The search has three steps:
+
+1. hypothesis maximizes the error of 255 S over normals, directions of the eye, exponents and
+   coefficients.
+2. Many points climb at once by random steps (hill climbing).
+3. Every small value of Cp d is tried for the best points. Cp d shifts S without adding an error, so
+   that S falls just on the wrong side of a half and the final rounding adds its 1/2 LSB.
+
+model/data/adversarial.json holds the worst input of each family, in integers.
 """
 
 from __future__ import annotations
@@ -13,42 +19,51 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from phong75.model.analysis import error_budget, reference
+from phong75.model.arrays import Ints, Reals, Trace
 from phong75.model.config import DEFAULT as C
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
+from phong75.model.twin.core.phong_unit import shade
 from phong75.model.twin.core.specular_power_tables import specular_power_tables
-from phong75.model.twin.phong_pipeline import shade
 
+#: File of the worst inputs.
 KEPT = Path(__file__).parent.parent / "data" / "adversarial.json"
+
+#: Largest exponents n of the families.
 LIMITS = (10, 32, 128)
+
+#: Code of 1.0 in `Config.coefficient`.
 ONE = C.coefficient.one
 
-#: Cp d is tried up to this code: a little more than two LSB of a colour.
+#: Largest code of Cp d in step 3: slightly more than two LSB of a colour code.
 AMBIENT = 2 * ONE // 255 + 4
 
-#: The exponents of the table of cos(s)**n, and the error that is to be beaten at n = 20: 50 M
-#: powers a second in 12.3 k gates, AMM 229-231.1146 (2012).
+#: Exponents at which `power_errors` measures cos(s)**n.
 EXPONENTS = (1.5, 2, 5, 10, 20, 32, 64, 128)
+
+#: Error of cos(s)**20 in a published design, for comparison: 50 M powers per second, 12.3 k gates,
+#: AMM 229-231.1146 (2012).
 AMM_2012 = 0.00141
 
 
 @dataclass(frozen=True)
 class Family:
-    """Inputs with n of at most `limit`, and W(i) constant or (`steep`) with any step."""
+    """A family of inputs: n of at most `limit`; W(i) constant, or arbitrary if `steep`."""
 
     limit: int
     steep: bool
 
     @property
     def name(self) -> str:
-        """In words."""
+        """The name that tables show."""
         return f"n ≤ {self.limit}, {'any W' if self.steep else 'W constant'}"
 
     def bound_lsb(self) -> float:
-        """The largest derived bound of the family, over angles of the eye and exponents."""
+        """The largest derived error bound of the family, LSB, over eye angles and exponents."""
         points = np.arange(C.weight_points) % 2 if self.steep else np.ones(C.weight_points)
         n = [n for n in (1, 1.5, 2, 3, 5, 10, 20, 32, 64, 128) if n <= self.limit]
         worst = 0.0
@@ -58,7 +73,9 @@ class Family:
             for angle in np.linspace(0, np.pi, 33):
                 h = half_vector_codes(np.array([np.sin(angle), 0, np.cos(angle)]), C)
                 frame = Frame(1, 1, h, False, (0, 0, 0), table, np.zeros(1, SPAN_DTYPE))
-                worst = max(worst, float(error_budget.bound_lsb(frame)))
+                bound = error_budget.bound_lsb(frame)
+                assert bound is not None  # only `quadratic_spans` may have none
+                worst = max(worst, bound)
         return worst
 
 
@@ -67,8 +84,13 @@ FAMILIES = tuple(Family(limit, steep) for steep in (False, True) for limit in LI
 
 @dataclass
 class Inputs:
-    """Points of the search, codes: normal int64[3, n]; half_vector int64[2, n]; exponent, ambient,
-    diffuse int64[n]; weight int64[2, n]: W at both ends of the interval that the normal is in."""
+    """n points of the search, in codes.
+
+    normal: int64[3, n], `Config.normal`. half_vector: int64[2, n], `Config.half_vector`. exponent:
+    int64[n], `Config.exponent`. ambient, diffuse: int64[n], Cp d and Cp (1 - d),
+    `Config.coefficient`. weight: int64[2, n], W at both ends of the table interval that contains
+    the Zn of the normal, `Config.coefficient`.
+    """
 
     normal: np.ndarray
     half_vector: np.ndarray
@@ -77,21 +99,24 @@ class Inputs:
     diffuse: np.ndarray
     weight: np.ndarray
 
-    def take(self, which) -> Inputs:
-        """Those that `which` (a mask or indices) selects."""
+    def take(self, which: Ints | slice | list[int]) -> Inputs:
+        """The points selected by `which` (a mask or indices)."""
         return Inputs(*(getattr(self, f)[..., which] for f in self.__dataclass_fields__))
 
 
 def _points(inputs: Inputs) -> np.ndarray:
-    """W at all points, int64[n, P]: the ends of the normal's interval, continued on each side."""
+    """W at all table points, int64[n, P]: constant on each side of the normal's interval."""
     z = inputs.normal[2] / np.maximum(np.linalg.norm(inputs.normal.astype(float), axis=0), 1)
     interval = np.clip((z * (C.weight_points - 1)).astype(np.int64), 0, C.weight_points - 2)
     right = np.arange(C.weight_points) > interval[:, None]
     return np.where(right, inputs.weight[1][:, None], inputs.weight[0][:, None])
 
 
-def evaluate(inputs: Inputs):
-    """(codes, 255 S before the final rounding, 255 S exactly), one channel, [n] each."""
+def evaluate(inputs: Inputs) -> tuple[Ints, Reals, Reals]:
+    """Shade all points with the twin and in float64, one channel.
+
+    Returns (codes int[n], 255 S of the twin before the final rounding, exact 255 S), float64[n].
+    """
     count = inputs.normal.shape[1]
     material = np.arange(count)
     points = _points(inputs)
@@ -100,28 +125,29 @@ def evaluate(inputs: Inputs):
         channel + inputs.ambient[:, None], channel + inputs.diffuse[:, None], points,
         inputs.exponent,
     )  # fmt: skip
-    # A material and a direction of the eye for each point, which the twin takes in its stride.
-    frame = Frame(1, 1, inputs.half_vector, False, (0, 0, 0), table, np.zeros(0, SPAN_DTYPE))
-    trace: dict = {}
+    # Each point has a material and a half vector of its own. The twin broadcasts over both.
+    half_vector: Any = inputs.half_vector
+    frame = Frame(1, 1, half_vector, False, (0, 0, 0), table, np.zeros(0, SPAN_DTYPE))
+    trace: Trace = {}
     codes = shade(inputs.normal, material, frame, C, trace)[0]
     white = (1 << C.colour_bits) - 1
-    given = white * C.intensity.real(trace["shading_unit.intensity"][0])
+    unrounded = white * C.intensity.real(trace["colour_channel.intensity"][0])
     real = C.coefficient.real
     exact = reference.shade(
         inputs.normal.T.astype(float), real(table.ambient), real(table.diffuse), real(points),
         C.exponent.real(inputs.exponent), reference.eye_of(inputs.half_vector), False,
     )[:, 0]  # fmt: skip
-    return codes, given, exact
+    return codes, unrounded, exact
 
 
-def _badness(inputs: Inputs) -> np.ndarray:
-    """The error of S in LSB, 0 where Cp d could carry S to 1."""
-    _, given, exact = evaluate(inputs)
-    return np.where(exact < 252, np.abs(given - exact), 0)
+def _objective(inputs: Inputs) -> np.ndarray:
+    """The error of 255 S in LSB, float64[n]; 0 for points that step 3 could saturate at S = 1."""
+    _, unrounded, exact = evaluate(inputs)
+    return np.where(exact < 252, np.abs(unrounded - exact), 0)
 
 
-def _start(family: Family, count: int, rng) -> tuple[Inputs, np.ndarray]:
-    """Random points, half of them in a highlight, and the angles of the eye."""
+def _start(family: Family, count: int, rng: np.random.Generator) -> tuple[Inputs, Reals]:
+    """`count` random points, half of them near a highlight, and their eye angles (radians)."""
     angle = rng.uniform(0, np.pi, count)
     half = np.stack([np.sin(angle / 2), 0 * angle, np.cos(angle / 2)])
     spread = np.where(rng.random(count) < 0.5, 0.2, 1.0)
@@ -139,14 +165,16 @@ def _start(family: Family, count: int, rng) -> tuple[Inputs, np.ndarray]:
     return inputs, angle
 
 
-def _step(family: Family, inputs: Inputs, angle, rng) -> tuple[Inputs, np.ndarray]:
-    """Neighbours of all points, at all scales."""
+def _step(
+    family: Family, inputs: Inputs, angle: Reals, rng: np.random.Generator
+) -> tuple[Inputs, Reals]:
+    """A random neighbour of each point, at a random scale, and the neighbours' eye angles."""
     count = len(angle)
 
-    def moved(values, low, high):
+    def perturb(values: Ints, low: int, high: int) -> Ints:
         scale = 2.0 ** rng.uniform(0, np.log2(high - low), values.shape)
-        by = np.rint(rng.normal(size=values.shape) * scale).astype(np.int64)
-        return np.clip(np.where(rng.random(values.shape) < 0.4, values + by, values), low, high)
+        step = np.rint(rng.normal(size=values.shape) * scale).astype(np.int64)
+        return np.clip(np.where(rng.random(values.shape) < 0.4, values + step, values), low, high)
 
     angle = np.where(
         rng.random(count) < 0.3,
@@ -154,35 +182,43 @@ def _step(family: Family, inputs: Inputs, angle, rng) -> tuple[Inputs, np.ndarra
         angle,
     )
     one = C.exponent.one
-    exponent = moved(inputs.exponent, one, family.limit * one)
+    exponent = perturb(inputs.exponent, one, family.limit * one)
     exponent = np.where(rng.random(count) < 0.1, family.limit * one, exponent)
-    weight = moved(inputs.weight, 0, ONE)
+    weight = perturb(inputs.weight, 0, ONE)
     ends = rng.integers(0, 2, weight.shape) * ONE
     weight = np.where(rng.random(weight.shape) < 0.1, ends, weight)
     if not family.steep:
         weight[1] = weight[0]
     half_vector = C.half_vector.quantize([np.sin(angle / 2), np.cos(angle / 2)])
     return Inputs(
-        moved(inputs.normal, C.normal.min, C.normal.max), half_vector, exponent, inputs.ambient,
-        moved(inputs.diffuse, 0, ONE - AMBIENT), weight,
+        perturb(inputs.normal, C.normal.min, C.normal.max), half_vector, exponent, inputs.ambient,
+        perturb(inputs.diffuse, 0, ONE - AMBIENT), weight,
     ), angle  # fmt: skip
 
 
-def _climb(family, inputs, angle, rounds, rng, progress) -> Inputs:
-    """Every point climbs by random steps; now and then the worse half starts anew from the better.
+def _climb(
+    family: Family,
+    inputs: Inputs,
+    angle: Reals,
+    rounds: int,
+    rng: np.random.Generator,
+    progress: Callable[[float], None],
+) -> Inputs:
+    """Hill climbing: each point moves to a neighbour with a larger error, `rounds` times.
 
-    Returns the points, the best first.
+    Every 50 rounds copies of the better half replace the worse half. Returns the points, sorted by
+    falling error.
     """
-    best = _badness(inputs)
+    best = _objective(inputs)
     count = len(angle)
     for k in range(rounds):
-        tried, tried_angle = _step(family, inputs, angle, rng)
-        found = _badness(tried)
-        better = found > best
-        best = np.where(better, found, best)
-        angle = np.where(better, tried_angle, angle)
+        neighbours, neighbour_angle = _step(family, inputs, angle, rng)
+        objective = _objective(neighbours)
+        better = objective > best
+        best = np.where(better, objective, best)
+        angle = np.where(better, neighbour_angle, angle)
         inputs = Inputs(*(
-            np.where(better, getattr(tried, f), getattr(inputs, f))
+            np.where(better, getattr(neighbours, f), getattr(inputs, f))
             for f in inputs.__dataclass_fields__
         ))  # fmt: skip
         if k % 50 == 49 and k < rounds * 0.8:
@@ -194,13 +230,13 @@ def _climb(family, inputs, angle, rounds, rng, progress) -> Inputs:
 
 
 def _explore(family: Family, examples: int) -> list[dict]:
-    """Points that hypothesis comes upon while it drives the error up, the best last."""
+    """The best 200 points that hypothesis generates while it maximizes the error, best last."""
     from hypothesis import HealthCheck, given, settings, target
     from hypothesis import strategies as st
 
     component = st.integers(C.normal.min, C.normal.max) | st.integers(-64, 64)
     coefficient = st.integers(0, ONE)
-    found: list[tuple[float, dict]] = []
+    scored: list[tuple[float, dict]] = []
 
     @settings(
         max_examples=examples, derandomize=True, database=None, deadline=None,
@@ -211,24 +247,26 @@ def _explore(family: Family, examples: int) -> list[dict]:
         st.integers(C.exponent.one, family.limit * C.exponent.one),
         st.integers(0, ONE - AMBIENT), st.tuples(coefficient, coefficient),
     )  # fmt: skip
-    def drive(normal, angle, exponent, diffuse, weight):
+    def drive(
+        normal: tuple[int, ...], angle: float, exponent: int, diffuse: int, weight: tuple[int, ...]
+    ) -> None:
         point = {
             "normal": normal, "angle": angle, "exponent": exponent, "diffuse": diffuse,
             "weight": weight if family.steep else weight[:1] * 2,
         }  # fmt: skip
-        badness = float(_badness(_gathered([point])[0])[0])
-        found.append((badness, point))
-        target(badness)
+        objective = float(_objective(_gathered([point])[0])[0])
+        scored.append((objective, point))
+        target(objective)
 
     drive()
-    return [point for _, point in sorted(found, key=lambda f: f[0])[-200:]]
+    return [point for _, point in sorted(scored, key=lambda pair: pair[0])[-200:]]
 
 
 def _gathered(points: list[dict]) -> tuple[Inputs, np.ndarray]:
-    """`points` of `_explore` as arrays, and their angles."""
+    """The `points` of `_explore` as arrays, and their eye angles (radians)."""
     angle = np.array([p["angle"] for p in points])
 
-    def column(name):
+    def column(name: str) -> Ints:
         return np.array([p[name] for p in points], np.int64).T
 
     return Inputs(
@@ -241,8 +279,12 @@ def search(
     family: Family, points: int = 4096, rounds: int = 1500, examples: int = 1500, climbs: int = 3,
     progress: Callable[[float], None] | None = None,
 ) -> dict:  # fmt: skip
-    """The worst input found in `climbs` climbs of `points` points, as a row for `KEPT`. The same
-    for the same arguments."""
+    """The worst input that the search finds, as a row of `KEPT`.
+
+    points: number of points that climb at once. rounds: steps of a climb. examples: examples that
+    hypothesis generates. climbs: number of climbs from different starts. progress: called with the
+    part done, 0 to 1. The same arguments give the same result.
+    """
     explored = _gathered(_explore(family, examples))
     rows = []
     for climb in range(climbs):
@@ -254,7 +296,7 @@ def search(
                 getattr(inputs, name)[..., :count] = getattr(explored[0], name)[..., :count]
             angle[:count] = explored[1][:count]
 
-        def done(part, climb=climb):
+        def done(part: float, climb: int = climb) -> None:
             if progress:
                 progress((climb + part) / climbs)
 
@@ -263,11 +305,11 @@ def search(
 
 
 def _worst(family: Family, inputs: Inputs) -> dict:
-    """The worst of the first of `inputs`, each with every Cp d."""
+    """The worst of the first 256 of `inputs` after every Cp d up to AMBIENT has been tried."""
     inputs = inputs.take(slice(0, 256))
-    count, room = inputs.normal.shape[1], np.arange(AMBIENT + 1)
-    inputs = inputs.take(np.repeat(np.arange(count), len(room)))
-    inputs = replace(inputs, ambient=np.tile(room, count))
+    count, ambient = inputs.normal.shape[1], np.arange(AMBIENT + 1)
+    inputs = inputs.take(np.repeat(np.arange(count), len(ambient)))
+    inputs = replace(inputs, ambient=np.tile(ambient, count))
     codes, _, exact = evaluate(inputs)
     worst = int(np.argmax(np.abs(codes - exact)))
     one = inputs.take([worst])
@@ -285,18 +327,18 @@ def _worst(family: Family, inputs: Inputs) -> dict:
 
 
 def kept() -> list[dict]:
-    """The worst inputs found so far, one a family, as `search` returns them."""
+    """The worst inputs found so far, one per family: rows as `search` returns them."""
     return json.loads(KEPT.read_text())
 
 
 def keep(rows: list[dict]) -> None:
-    """Write `rows` in place of the kept ones."""
+    """Replace the file of the worst inputs by `rows`."""
     lines = ",\n".join(f" {json.dumps(row)}" for row in rows)
     KEPT.write_text(f"[\n{lines}\n]\n")
 
 
 def frame(row: dict) -> Frame:
-    """The frame of one pixel that shows the input `row`."""
+    """The frame of one pixel whose input is `row` (of `kept` or `search`)."""
     table = MaterialTable.empty(C)
     table.ambient[0], table.diffuse[0] = row["ambient"], row["diffuse"]
     table.weight[0], table.exponent[0] = row["weight"], row["exponent"]
@@ -306,20 +348,24 @@ def frame(row: dict) -> Frame:
 
 
 def power_errors(progress: Callable[[float], None] | None = None) -> list[dict]:
-    """The error of cos(s)**n alone at EXPONENTS, over every code of 1 - cos(s)."""
+    """The largest error of cos(s)**n for each of EXPONENTS, over every code of 1 - cos(s).
+
+    Returns one dict per exponent: n, number of codes, max_error, the code at_versine where the
+    error is largest, and the derived bound. Errors are absolute. progress: see `search`.
+    """
     rows = []
     block = 1 << 18
     for done, n in enumerate(EXPONENTS):
-        worst, at = 0.0, 0
+        worst, worst_code = 0.0, 0
         exponent = np.full(block, C.exponent.quantize(n))
         for first in range(0, C.versine.one, block):
             v = np.arange(first, first + block)
             power = C.power.real(specular_power_tables(v, exponent, C))
             error = np.abs(power - (1 - C.versine.real(v)) ** n)
             if error.max() > worst:
-                worst, at = float(error.max()), first + int(error.argmax())
+                worst, worst_code = float(error.max()), first + int(error.argmax())
         rows.append({
-            "n": n, "codes": C.versine.one, "max_error": worst, "at_versine": at,
+            "n": n, "codes": C.versine.one, "max_error": worst, "at_versine": worst_code,
             "bound": float(error_budget.specular_power_tables(n, C)),
         })  # fmt: skip
         if progress:

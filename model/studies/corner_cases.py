@@ -1,9 +1,11 @@
-"""Stiff and extreme cases: what is extreme, what must happen, and the frame that shows it.
+# SPDX-License-Identifier: MIT
+"""Corner cases: frames of extreme input, each with the behaviour that is expected of the RTL.
 
-Every case must come out of the RTL as the model says, to the bit, whole, flagged where it has no
-direction, and within the derived error bound from the very integers at the ports. `cases` gives
-them all, `frames` their frames alone; `make stability` runs them and prints the table. Most frames
-are spans made by hand, in integers; the others go through the front end.
+In every case the pixels of the RTL must equal those of the twin bit for bit, none may be missing,
+zero normals must be flagged, and the error against the float64 reference of the integers at the
+ports must be within the derived bound (`error_budget`). `cases` returns all cases, `frames` only
+their frames. sim/frame/corner_cases.py runs the cases and judges them. Most frames are directed
+spans in integers; the frames of triangles go through the front end.
 """
 
 from __future__ import annotations
@@ -14,49 +16,55 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from phong75.model.analysis import reference
+from phong75.model.arrays import ArrayLike, Flags, Ints, Reals, Spans
 from phong75.model.config import DEFAULT as C
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
 from phong75.model.front import visibility
 from phong75.model.front.camera import Camera
 from phong75.model.front.mesh import Mesh, normalize
 from phong75.model.front.scene import Material, Scene, SceneObject
-from phong75.model.front.scene_to_spans import encode, front_end
+from phong75.model.front.scene_to_spans import encode
 from phong75.model.front.visibility import GRID
+from phong75.model.scene_to_frame import front_end
 from phong75.model.twin import Pixels
 
-#: The exponents that the cases use, and the angle from light to eye where it does not matter.
+#: Specular exponents of the materials in the cases.
 EXPONENTS = (1, 1.5, 2, 10, 64, 127, 128)
+
+#: Default angle from light to eye, radians.
 ANGLE = np.radians(40)
 
-#: Pixels whose float64 reference is worked on at a time.
+#: Number of pixels that `errors` processes at a time; this bounds the memory.
 BLOCK = 1 << 17
 
 
-def _nothing_more(frame: Frame, got: Pixels) -> list[str]:
+def _no_check(frame: Frame, got: Pixels) -> list[str]:
     return []
 
 
 @dataclass(frozen=True)
 class Case:
-    """A row of the table: `extreme` says what is stiff, `expected` what must happen.
+    """One corner case.
 
-    check: what must hold of the pixels that came, beyond what must hold in every row; it lists
-    what does not. full_rate: whether a pixel must leave every clock, which `make stability` sees.
+    extreme: what is extreme in the input. expected: the expected behaviour.
+    check: an additional check of the RTL's pixels, check(frame, pixels); returns one message per
+    failure.
+    full_rate: whether one pixel per cycle must leave the pipeline.
     """
 
     name: str
     extreme: str
     expected: str
     frame: Frame
-    check: Callable[[Frame, Pixels], list[str]] = _nothing_more
+    check: Callable[[Frame, Pixels], list[str]] = _no_check
     full_rate: bool = False
 
 
-# -- frames made by hand ---------------------------------------------------------------------------
+# -- directed frames -------------------------------------------------------------------------------
 
 
-def _materials(*rows) -> MaterialTable:
-    """Rows (Cp, d, W, n)."""
+def _materials(*rows: tuple[ArrayLike, float, ArrayLike, float]) -> MaterialTable:
+    """The material table of `rows` (Cp, d, W, n)."""
     table = MaterialTable.empty(C)
     for index, (cp, d, weight, n) in enumerate(rows):
         table.set(index, cp, d, np.broadcast_to(weight, C.weight_points), n, C)
@@ -64,17 +72,18 @@ def _materials(*rows) -> MaterialTable:
 
 
 def _every_exponent() -> MaterialTable:
-    """For each of EXPONENTS a coloured material and one of nothing but a highlight."""
+    """For each of EXPONENTS a coloured material; then for each a material with only a highlight."""
     coloured = [((0.6, 0.3, 0.05), 0.1, 0.4, n) for n in EXPONENTS]
     return _materials(*coloured, *[((0, 0, 0), 0, 1, n) for n in EXPONENTS])
 
 
 def _half_vector(angle: float) -> tuple[int, int]:
+    """Codes of the half vector for `angle` (radians) from light to eye."""
     return half_vector_codes(np.array([np.sin(angle), 0, np.cos(angle)]), C)
 
 
-def _span(start, step, length, material=0) -> np.ndarray:
-    """SPAN_DTYPE[n]: start, step int[n, 3] or [3]; length, material int[n] or int."""
+def _span(start: ArrayLike, step: ArrayLike, length: ArrayLike, material: ArrayLike = 0) -> Spans:
+    """SPAN_DTYPE[n]. start, step: codes, int[n, 3] or [3]. length, material: int[n] or int."""
     start = np.asarray(start, np.int64)
     spans = np.zeros(np.broadcast_shapes(start.shape[:-1], np.shape(length), np.shape(step)[:-1],
                                          np.shape(material)) or (1,), SPAN_DTYPE)  # fmt: skip
@@ -83,33 +92,42 @@ def _span(start, step, length, material=0) -> np.ndarray:
     return spans
 
 
-def _between(first, last, length, material=0) -> np.ndarray:
-    """Spans from normals `first` to `last` (float64[n, 3], components within the format)."""
+def _between(first: Reals, last: Reals, length: ArrayLike, material: ArrayLike = 0) -> Spans:
+    """Spans from normals `first` to `last`, float64[n, 3], components within `Config.normal`."""
     length = np.broadcast_to(length, (len(first),))
     step = (last - first) / np.maximum(length - 1, 1)[:, None]
     return _span(*encode(first, step, length, C), length, material)
 
 
-def _frame(spans, table=None, angle=ANGLE, two_sided=False, half_vector=None) -> Frame:
-    """A frame of `spans`, each at dots of its own."""
+def _frame(
+    spans: Spans,
+    table: MaterialTable | None = None,
+    angle: float = ANGLE,
+    two_sided: bool = False,
+    half_vector: tuple[int, int] | None = None,
+) -> Frame:
+    """A frame of `spans`; x, y and last are set so that no two spans overlap.
+
+    angle: from light to eye, radians. half_vector: codes, override `angle`.
+    """
     longest = int(spans["length"].max())
     columns = max(1, min(C.max_size // longest, -(-len(spans) // 4)))
-    place = np.arange(len(spans))
-    spans["x"], spans["y"] = place % columns * longest, place // columns
-    spans["last"] = place == len(spans) - 1
+    index = np.arange(len(spans))
+    spans["x"], spans["y"] = index % columns * longest, index // columns
+    spans["last"] = index == len(spans) - 1
     return Frame(
         columns * longest, int(spans["y"].max()) + 1, half_vector or _half_vector(angle),
         two_sided, (0, 0, 0), _every_exponent() if table is None else table, spans,
     )  # fmt: skip
 
 
-def _directions(rng, count: int) -> np.ndarray:
+def _directions(rng: np.random.Generator, count: int) -> Reals:
     """Unit vectors float64[count, 3], uniform on the sphere."""
     return normalize(rng.normal(size=(count, 3)))
 
 
 def _normals(frame: Frame) -> np.ndarray:
-    """The normal of every pixel of a legal frame, int64[n, 3]."""
+    """The interpolated normal of every pixel of a legal frame, codes int64[n, 3]."""
     spans = frame.spans
     span = np.repeat(np.arange(len(spans)), spans["length"])
     k = np.arange(len(span)) - np.repeat(np.cumsum(spans["length"]) - spans["length"],
@@ -118,12 +136,12 @@ def _normals(frame: Frame) -> np.ndarray:
 
 
 def _material(frame: Frame) -> np.ndarray:
-    """The material of every pixel, int[n]."""
+    """The material index of every pixel of a legal frame, int[n]."""
     return np.repeat(frame.spans["material"], frame.spans["length"])
 
 
 def dark_stays_ambient(frame: Frame, got: Pixels) -> list[str]:
-    """A pixel that is not lit has exactly the rounded Cp d."""
+    """Check that every pixel that is not lit has exactly the rounded ambient term Cp d."""
     z = _normals(frame)[:, 2]
     dark = z == 0 if frame.two_sided else z <= 0
     ambient = frame.materials.ambient[_material(frame)[dark]]
@@ -148,7 +166,7 @@ def _ends_apart() -> Iterator[Case]:
             f"ends {degrees}° apart",
             f"normals at the ends of a span {degrees}° apart; the length falls to "
             f"{np.cos(turn / 2):.2g} in the middle",
-            "as accurate as anywhere: the components are shifted before they are squared",
+            "within the same bound: the components are shifted before they are squared",
             _frame(_between(first, last, 257, material)),
             dark_stays_ambient,
         )
@@ -156,7 +174,7 @@ def _ends_apart() -> Iterator[Case]:
     yield Case(
         "ends exactly opposed",
         "ends that cancel to the last bit: the normal in the middle is the zero vector",
-        "Cp d there, flagged once a span; accurate one dot beside it",
+        "Cp d there, flagged once per span; accurate one pixel beside it",
         _frame(_span(-128 * step, step, 257, np.arange(56) % 14)),
         lambda f, p: dark_stays_ambient(f, p) + _zeros(f, 56),
     )
@@ -164,8 +182,8 @@ def _ends_apart() -> Iterator[Case]:
     line = np.arange(-64, 65)[:, None]
     yield Case(
         "plane through zero",
-        "normals linear in x and y that vanish at one dot, exactly",
-        "Cp d at that dot, flagged; every direction right round it",
+        "normals linear in x and y that are exactly zero at one pixel",
+        "Cp d at that pixel, flagged; every direction accurate around it",
         _frame(_span(line * down - 64 * across, across, 129, np.arange(129) % 7)),
         lambda f, p: dark_stays_ambient(f, p) + _zeros(f, 1),
     )
@@ -175,15 +193,16 @@ def _ends_apart() -> Iterator[Case]:
     yield Case(
         "three normals at 120°",
         "the normals of a triangle's corners cancel at its centre",
-        "every dot of the triangle once; accurate from the integers at the ports",
+        "every pixel of the triangle once; accurate from the integers at the ports",
         _picture(corners, normals[None], 320, 304),
         _once,
     )
 
 
 def _zeros(frame: Frame, count: int) -> list[str]:
-    found = int((_normals(frame) == 0).all(axis=1).sum())
-    return [] if found == count else [f"the case has {found} zero vectors, not {count}"]
+    """Check that `frame` has `count` pixels whose normal is the zero vector."""
+    zeros = int((_normals(frame) == 0).all(axis=1).sum())
+    return [] if zeros == count else [f"the case has {zeros} zero vectors, expected {count}"]
 
 
 def _lengths() -> Iterator[Case]:
@@ -191,32 +210,32 @@ def _lengths() -> Iterator[Case]:
     for two_sided in (False, True):
         yield Case(
             f"zero vector{', two-sided' if two_sided else ''}",
-            "spans of nothing but zero vectors, of every material",
-            "Cp d, and every pixel flagged",
+            "spans of zero vectors only, of every material",
+            "Cp d, every pixel flagged",
             _frame(_span([0, 0, 0], 0, np.arange(1, 29), np.arange(28) % 14), two_sided=two_sided),
             dark_stays_ambient,
         )
     grid = np.stack(np.meshgrid(*[np.arange(-2, 3)] * 3), axis=-1).reshape(-1, 3)
     yield Case(
         "normals of a few units",
-        "all normals with components of -2 to 2 in the last place",
-        "directions as exact as those of long normals",
+        "all normals with components of -2 to 2 LSB",
+        "within the same bound as long normals",
         _frame(_span(np.tile(grid, (14, 1)), 0, 1, np.repeat(np.arange(14), len(grid)))),
         dark_stays_ambient,
     )
     short = 2.0**-20
     yield Case(
         "normals of 2⁻²⁰",
-        "ends a millionth long: 1024 units in the last place",
-        "as accurate as unit normals",
+        "ends of length 2⁻²⁰: 1024 LSB",
+        "within the same bound as unit normals",
         _frame(_between(short * _directions(rng, 56), short * _directions(rng, 56), 65,
                         np.arange(56) % 14)),
         dark_stays_ambient,
     )  # fmt: skip
     yield Case(
         "lengths 2 to 2⁻²⁰",
-        "one end at the border of the format, the other 2²¹ times shorter",
-        "as accurate as unit normals",
+        "one end at the limit of the format, the other 2²¹ times shorter",
+        "within the same bound as unit normals",
         _frame(_between(1.999 * _directions(rng, 56), short * _directions(rng, 56), 129,
                         np.arange(56) % 14)),
         dark_stays_ambient,
@@ -235,7 +254,7 @@ def _spans() -> Iterator[Case]:
         yield Case(
             f"spans of {length}",
             f"spans of {length} pixel{'s' * (length > 1)}",
-            "every pixel once, a pixel a clock",
+            "every pixel once, one pixel per cycle",
             _frame(_between(first, last, length, np.arange(count) % 14)),
             _once,
             full_rate=True,
@@ -247,16 +266,17 @@ def _spans() -> Iterator[Case]:
     down = _span(np.where(signs, high, low), np.where(signs, low, high), 2)
     yield Case(
         "slope at full scale",
-        "steps of ±2 a pixel, from one end of the format to the other",
+        "steps of ±2 per pixel, from one end of the format to the other",
         "no wrap-around; spans that end inside the format are not flagged",
         _frame(np.tile(np.concatenate([up, long, down]), 4), two_sided=True),
         dark_stays_ambient,
     )
+    single = _directions(rng, 4096)
     yield Case(
         "4096 spans back to back",
-        "spans of one pixel, each of another material, with no clock between",
-        "a pixel every clock",
-        _frame(_between(*[_directions(rng, 4096)] * 2, 1, np.arange(4096) % 14)),
+        "spans of one pixel, each of another material, without an idle cycle between",
+        "one pixel per cycle",
+        _frame(_between(single, single, 1, np.arange(4096) % 14)),
         full_rate=True,
     )
 
@@ -278,18 +298,18 @@ def _light() -> Iterator[Case]:
         yield Case(
             f"highlights, eye at {degrees}°",
             f"highlights of n = 1 to 128 within one facet; eye and light {degrees}° apart{same}",
-            "within the bound of each n",
+            "within the bound of the largest n",
             _frame(_between(first, last, 193, np.tile(np.arange(14), 9)), angle=2 * half),
             dark_stays_ambient,
         )
-    around = np.linspace(0, 2 * np.pi, 29)[:28]
-    grazing = np.stack([np.cos(around), np.sin(around), 0 * around], axis=1)
+    azimuth = np.linspace(0, 2 * np.pi, 29)[:28]
+    grazing = np.stack([np.cos(azimuth), np.sin(azimuth), 0 * azimuth], axis=1)
     start = np.repeat(C.normal.quantize(grazing), 14, axis=0)
     for degrees in (40, 178):
         yield Case(
             f"grazing light, eye at {degrees}°",
-            "cos i from 0 to 2⁻¹⁶ along a span, all round",
-            "Cp d exactly at 0, lit from the first unit of Zn on",
+            "cos(i) from 0 to 2⁻¹⁶ along a span, in 28 directions",
+            "Cp d at exactly 0; lit from Zn = 1 LSB on",
             _frame(_span(start, [0, 0, 64], 257, np.tile(np.arange(14), 28)),
                    angle=np.radians(degrees)),
             dark_stays_ambient,
@@ -298,41 +318,41 @@ def _light() -> Iterator[Case]:
     for degrees in (0, 40, 100, 175):
         h = _half_vector(np.radians(degrees))
         scale = C.normal.fraction - C.half_vector.fraction
-        exactly = np.array([h[0], 0, h[1]]) << scale
-        around_it = np.concatenate([exactly + (near << shift) for shift in (0, scale)])
-        count = len(around_it)
+        exact = np.array([h[0], 0, h[1]]) << scale
+        normals = np.concatenate([exact + (near << shift) for shift in (0, scale)])
+        count = len(normals)
         yield Case(
             f"mirror direction, eye at {degrees}°",
-            "the normal halfway between light and eye to the last bit, and one unit beside it",
+            "the normal halfway between light and eye to the last bit, and one LSB beside it",
             "cos(s)ⁿ is 1 for every n: W = 1 gives white",
-            _frame(_span(np.tile(around_it, (14, 1)), 0, 1, np.repeat(np.arange(14), count)),
+            _frame(_span(np.tile(normals, (14, 1)), 0, 1, np.repeat(np.arange(14), count)),
                    angle=np.radians(degrees)),
             lambda f, p: [] if p.rgb[_material(f) >= 7].min() == 255 else ["not white"],
         )  # fmt: skip
     behind = _span([0, 0, -C.normal.one], 0, 5, np.arange(14))
     yield Case(
         "light exactly behind",
-        "the normal away from the light to the last bit",
+        "the normal points exactly away from the light",
         "Cp d",
         _frame(behind.copy()),
         dark_stays_ambient,
     )
     yield Case(
         "light exactly behind, two-sided",
-        "the same with |Zn| shaded",
-        "the colour of the normal towards the light",
+        "the normal points exactly away from the light, |Zn| is shaded",
+        "the same colour as for the normal towards the light",
         _frame(np.concatenate([behind, _span([0, 0, C.normal.one], 0, 5, np.arange(14))]),
                two_sided=True),
-        lambda f, p: [] if np.array_equal(p.rgb[:70], p.rgb[70:]) else ["two colours"],
+        lambda f, p: [] if np.array_equal(p.rgb[:70], p.rgb[70:]) else ["the colours differ"],
     )  # fmt: skip
 
 
 def _terminator() -> Iterator[Case]:
-    around = np.linspace(0, 2 * np.pi, 28, endpoint=False)
-    rim = C.normal.quantize(np.stack([np.cos(around), np.sin(around), 0 * around], axis=1))
-    ways = ((0, "exactly", False), (0, "exactly, two-sided", True), (16, "but for 2⁻¹⁶", False),
-            (8, "but for 2⁻⁸", False))  # fmt: skip
-    for bits, name, two_sided in ways:
+    azimuth = np.linspace(0, 2 * np.pi, 28, endpoint=False)
+    rim = C.normal.quantize(np.stack([np.cos(azimuth), np.sin(azimuth), 0 * azimuth], axis=1))
+    variants = ((0, "exactly", False), (0, "exactly, two-sided", True), (16, "but for 2⁻¹⁶", False),
+                (8, "but for 2⁻⁸", False))  # fmt: skip
+    for bits, name, two_sided in variants:
         angle = np.pi - (2.0**-bits if bits else 0)
         across = _span(np.repeat(rim - [0, 0, 8], 14, axis=0), [0, 0, 1], 17,
                        np.tile(np.arange(14), 28))  # fmt: skip
@@ -340,9 +360,9 @@ def _terminator() -> Iterator[Case]:
                       np.tile(np.arange(14), 28))  # fmt: skip
         yield Case(
             f"terminator, eye opposite {name}",
-            f"Zn through 0 in steps of one unit; eye opposite the light {name}: the formula jumps "
-            "from Cp d to Cp d + W",
-            "the jump falls between the same two integers; so no larger bound is needed",
+            f"Zn through 0 in steps of 1 LSB; eye opposite the light {name}: eq. (3) jumps from "
+            "Cp d to Cp d + W",
+            "RTL and reference jump between the same two integers, so the bound stays the same",
             _frame(np.concatenate([across, steep]), angle=angle, two_sided=two_sided),
             dark_stays_ambient,
         )
@@ -358,14 +378,14 @@ def _coefficients() -> Iterator[Case]:
     first[:8] = [np.sin(ANGLE / 2), 0, np.cos(ANGLE / 2)]
     last[4:8] = first[4:8]
 
-    def crossing(materials):
+    def crossing(materials: int) -> Spans:
         return _between(first, last, 65, np.arange(64) % materials)
 
     axes = [((1, 0, 0), 0, 0, 1), ((0, 1, 0), 0.5, 0, 1), ((0, 0, 1), 1, 0, 1)]
     full = [((1, 1, 1), d, 1, n) for d, n in ((0, 1), (0.5, 10), (1, 128))]
     yield Case(
         "saturation",
-        "sums of up to 2 in each channel alone and in all",
+        "sums of up to 2 in each single channel and in all three",
         "white, never a wrap-around to black",
         _frame(crossing(6), _materials(*axes, *full)),
         lambda f, p: [] if (p.rgb[_material(f) == 5] == 255).all() else ["Cp d = 1 is not white"],
@@ -390,7 +410,7 @@ def _coefficients() -> Iterator[Case]:
     yield Case(
         "W(i) with steep steps",
         "W from 0 to 1 between neighbouring points, once and 32 times",
-        "within the bound, in which W's steepest line multiplies the error of cos(i)",
+        "within the bound, which grows with the steepest slope of W",
         _frame(crossing(6), _materials(*rows)),
     )
 
@@ -398,48 +418,58 @@ def _coefficients() -> Iterator[Case]:
 # -- triangles, through the front end --------------------------------------------------------------
 
 
-def _picture(corners, normals, width: int, height: int, angle: float = ANGLE) -> Frame:
-    """Triangles (float64[T, 3, 2], pixels, y down) with normals float64[T, 3, 3], in the light
-    frame, as the front end makes spans of them. Pixels map to the scene without rounding."""
+def _picture(
+    corners: ArrayLike, normals: ArrayLike, width: int, height: int, angle: float = ANGLE
+) -> Frame:
+    """The frame that the front end makes of triangles on the screen.
+
+    corners: float64[T, 3, 2], pixels, y downward. normals: float64[T, 3, 3], light frame. angle:
+    from light to eye, radians. One pixel is one scene unit, so that corners map to the scene
+    without rounding.
+    """
     corners, normals = np.array(corners, float), np.array(normals, float)
     u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    turned = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] > 0
-    corners[turned], normals[turned] = corners[turned, ::-1], normals[turned, ::-1]
+    clockwise = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0] > 0
+    corners[clockwise], normals[clockwise] = corners[clockwise, ::-1], normals[clockwise, ::-1]
     points = np.zeros((len(corners) * 3, 3))
     points[:, 0] = corners[..., 0].ravel() - width / 2
     points[:, 1] = height / 2 - corners[..., 1].ravel()
     mesh = Mesh(points, np.arange(len(points)).reshape(-1, 3), normals)
     camera = Camera("orthographic", np.eye(3), np.zeros(3), np.array([0, 0, 1.0]), float(height))
     light = np.array([-np.sin(angle), 0, np.cos(angle)])
-    shown = Material((0.6, 0.5, 0.2), 0.1, 32.0, (0.0, 1.0), (0.4, 0.4))
+    material = Material((0.6, 0.5, 0.2), 0.1, 32.0, (0.0, 1.0), (0.4, 0.4))
     scene = Scene("stability", width, height, (0, 0, 0), camera, light, False, "linear",
-                  [SceneObject("mesh", mesh, 0)], [shown])  # fmt: skip
+                  [SceneObject("mesh", mesh, 0)], [material])  # fmt: skip
     return front_end(scene).frame
 
 
 def _once(frame: Frame, got: Pixels) -> list[str]:
-    dots = got.y * frame.width + got.x
-    doubles = len(dots) - len(np.unique(dots))
-    return [f"{doubles} dots drawn twice"] if doubles else []
+    """Check that no pixel is drawn twice."""
+    index = got.y * frame.width + got.x
+    doubles = len(index) - len(np.unique(index))
+    return [f"{doubles} pixels drawn twice"] if doubles else []
 
 
-def _fills(x0: float, y0: float, x1: float, y1: float):
-    """A check: each dot with its centre in the rectangle is there once, and no other."""
+def _fills(x0: float, y0: float, x1: float, y1: float) -> Callable[[Frame, Pixels], list[str]]:
+    """A check that the pixels with their centre in the rectangle are drawn once, and no other."""
 
     def check(frame: Frame, got: Pixels) -> list[str]:
         x, y = np.arange(frame.width) + 0.5, np.arange(frame.height) + 0.5
         want = ((y >= y0) & (y < y1))[:, None] & ((x >= x0) & (x < x1))
         count = np.zeros(want.shape, np.int64)
         np.add.at(count, (got.y, got.x), 1)
-        said = ((count > 1, "drawn twice"), (want & (count == 0), "missing"),
-                (~want & (count > 0), "outside"))  # fmt: skip
-        return [f"{int(bad.sum())} dots {what}" for bad, what in said if bad.any()]
+        faults = ((count > 1, "drawn twice"), (want & (count == 0), "missing"),
+                  (~want & (count > 0), "outside"))  # fmt: skip
+        return [f"{int(bad.sum())} pixels {fault}" for bad, fault in faults if bad.any()]
 
     return check
 
 
-def _grid(x0, y0, columns, rows, wide, high) -> np.ndarray:
-    """Corners float64[2 * columns * rows, 3, 2] of a rectangle cut into cells, and each in two."""
+def _grid(x0: float, y0: float, columns: int, rows: int, wide: float, high: float) -> Reals:
+    """Corners float64[2 * columns * rows, 3, 2] of a grid of cells, two triangles per cell.
+
+    x0, y0: upper left corner; wide, high: size of a cell; pixels.
+    """
     j, i = np.mgrid[:rows, :columns].reshape(2, -1)
     left, top = x0 + i * wide, y0 + j * high
     right, bottom = x0 + (i + 1) * wide, y0 + (j + 1) * high
@@ -448,7 +478,8 @@ def _grid(x0, y0, columns, rows, wide, high) -> np.ndarray:
     return np.concatenate([np.stack([a, c, d], 1), np.stack([a, d, b], 1)])
 
 
-def _upward(rng, shape) -> np.ndarray:
+def _upward(rng: np.random.Generator, shape: tuple[int, ...]) -> Reals:
+    """Random normals with z >= 0, float64[shape]."""
     normals = rng.normal(size=shape)
     normals[..., 2] = np.abs(normals[..., 2])
     return normals
@@ -456,9 +487,9 @@ def _upward(rng, shape) -> np.ndarray:
 
 def _triangles() -> Iterator[Case]:
     rng = np.random.default_rng(5)
-    every = "every dot once, none missing; accurate from the integers at the ports"
+    every = "every pixel once, none missing; accurate from the integers at the ports"
 
-    def tiled(corners, width, height):
+    def tiled(corners: Reals, width: int, height: int) -> Frame:
         return _picture(corners, _upward(rng, (len(corners), 3, 3)), width, height)
 
     yield Case(
@@ -469,44 +500,47 @@ def _triangles() -> Iterator[Case]:
         wide, high = 2 * side, side
         yield Case(
             f"triangles of {side * side:g} pixel",
-            f"a rectangle cut into triangles of {side * side:g} pixel, {wide:g} wide and "
+            f"a rectangle cut into triangles of {side * side:g} pixel area, {wide:g} wide and "
             f"{high:g} high", every,
             tiled(_grid(1.25, 1.25, cells, cells, wide, high), 32, 32),
             _fills(1.25, 1.25, 1.25 + cells * wide, 1.25 + cells * high),
         )  # fmt: skip
     corners = _grid(3, 3, 5, 5, 5, 5)
     flat = corners[np.arange(200) % 50].copy()
-    flat[:100, 2] = flat[:100, 1]  # two corners in one
-    flat[100:, 2] = 0.75 * flat[100:, 0] + 0.25 * flat[100:, 1]  # three in a line
+    flat[:100, 2] = flat[:100, 1]  # two corners coincide
+    flat[100:, 2] = 0.75 * flat[100:, 0] + 0.25 * flat[100:, 1]  # three corners on a line
     yield Case(
-        "triangles of 0 pixels", "triangles without area, of two corners or of three in a line",
-        "they draw nothing and open no gap",
+        "triangles of 0 pixels",
+        "triangles without area: two corners coincide, or three are on a line",
+        "these triangles draw nothing and open no gap",
         tiled(np.concatenate([flat, corners]), 32, 32), _fills(3, 3, 28, 28),
     )  # fmt: skip
     yield Case(
-        "edges along scan lines", "edges exactly through the centres of dots, across and down",
-        "a dot on an edge belongs to the triangle below or to the right",
+        "edges along scan lines",
+        "horizontal and vertical edges exactly through the centres of pixels",
+        "a pixel on an edge belongs to the triangle below or to the right",
         tiled(_grid(2.5, 2.5, 9, 9, 3, 3), 32, 32), _fills(2.5, 2.5, 29.5, 29.5),
     )  # fmt: skip
     yield Case(
-        "abrupt turns", "neighbouring triangles whose normals have nothing in common", every,
+        "abrupt turns", "neighbouring triangles with unrelated normals", every,
         tiled(_grid(4, 4, 14, 14, 4, 4), 64, 64), _fills(4, 4, 60, 60),
     )  # fmt: skip
     yield _t_junctions(rng)
     x, y, _, _ = random_meshes(400, np.random.default_rng(6))
-    at = np.arange(400)
-    place = np.stack([at % 20 * MESH_DOTS, at // 20 * MESH_DOTS], axis=-1)[:, None, None]
-    corners = (np.stack([x, y], axis=-1) / GRID + place).reshape(-1, 3, 2)
+    index = np.arange(400)
+    origin = np.stack([index % 20 * MESH_PIXELS, index // 20 * MESH_PIXELS], axis=-1)
+    corners = (np.stack([x, y], axis=-1) / GRID + origin[:, None, None]).reshape(-1, 3, 2)
     yield Case(
-        "random meshes", "400 random triangulations, on grids that meet centres of dots and not",
-        "no dot twice (10⁵ more meshes: the row `shared edges`)",
-        tiled(corners, 20 * MESH_DOTS, 20 * MESH_DOTS), _once,
+        "random meshes",
+        "400 random triangulations, some with vertices at the centres of pixels",
+        "no pixel twice (the row `shared edges` covers 10⁵ more meshes)",
+        tiled(corners, 20 * MESH_PIXELS, 20 * MESH_PIXELS), _once,
     )  # fmt: skip
 
 
-def _t_junctions(rng) -> Case:
-    """A slanted edge from (15.3, 2) to (17.6, 62) with one triangle pair at its left and 13 rows
-    at its right."""
+def _t_junctions(rng: np.random.Generator) -> Case:
+    """A slanted edge from (15.3, 2) to (17.6, 62): one pair of triangles to the left, 13 pairs to
+    the right."""
     top, bottom = np.array([15.3, 2.0]), np.array([17.6, 62.0])
     left = [[[4, 2], [4, 62], bottom], [[4, 2], bottom, top]]
     cut = top + np.linspace(0, 1, 14)[:, None] * (bottom - top)
@@ -517,61 +551,63 @@ def _t_junctions(rng) -> Case:
     corners = np.array(left + right, float)
 
     def check(frame: Frame, got: Pixels) -> list[str]:
-        said = _once(frame, got)
-        seen = np.zeros((frame.height, frame.width), bool)
-        seen[got.y, got.x] = True
-        y, x = np.nonzero(~seen[2:62, 4:28])
+        messages = _once(frame, got)
+        covered = np.zeros((frame.height, frame.width), bool)
+        covered[got.y, got.x] = True
+        y, x = np.nonzero(~covered[2:62, 4:28])
         edge = top[0] + (y + 2.5 - top[1]) / (bottom[1] - top[1]) * (bottom[0] - top[0])
         far = np.abs(x + 4.5 - edge) > 2 / GRID
         if far.any():
-            said.append(f"{int(far.sum())} dots missing that are not on the edge")
-        return said
+            messages.append(f"{int(far.sum())} pixels missing that are not on the edge")
+        return messages
 
     return Case(
-        "T-junctions", "13 corners of triangles along the edge of another",
-        "no dot twice; a gap at most where a dot's centre is on the edge, to 2⁻¹¹ pixel",
+        "T-junctions", "13 corners of triangles along the edge of another triangle",
+        "no pixel twice; gaps only where the centre of a pixel is within 2⁻¹¹ pixel of the edge",
         _picture(corners, _upward(rng, (len(corners), 3, 3)), 32, 64), check,
     )  # fmt: skip
 
 
 def cases() -> list[Case]:
-    """Every case, in the order of the table. The same integers at every call."""
+    """All cases, in the order of the table. Every call returns the same integers."""
     makers = (_ends_apart, _lengths, _spans, _light, _terminator, _coefficients, _triangles)
     return [case for maker in makers for case in maker()]
 
 
 def frames() -> list[Frame]:
-    """The frames of all cases, for other checks that want extreme input."""
+    """The frames of all cases, as extreme input for other checks."""
     return [case.frame for case in cases()]
 
 
 # -- shared edges, over many meshes ----------------------------------------------------------------
 
-#: A random mesh lies within a square of this many dots.
-MESH_DOTS = 12
+#: Width and height of a random mesh, pixels.
+MESH_PIXELS = 12
 
 
-def random_meshes(count: int, rng):
-    """`count` random triangulations of random rectangles: x, y int64[count, 24, 3] in 1/GRID pixel,
-    and the rectangles' corners, int64[count, 2] each.
+def random_meshes(count: int, rng: np.random.Generator) -> tuple[Ints, Ints, Ints, Ints]:
+    """`count` random triangulations of random rectangles, 24 triangles each.
 
-    Eight points on the outline of the rectangle and one inside make a fan of eight triangles, and
-    a point in each splits it in three. A third of the meshes has its points on half pixels, so that
-    edges go through centres of dots, a third on eighths. Some triangles have no area.
+    Returns (x, y, low, high). x, y: int64[count, 24, 3], vertices in 1/GRID pixel. low, high:
+    int64[count, 2], upper left and lower right corners of the rectangles. Eight points on the
+    outline of the rectangle and one inside make a fan of eight triangles. A point in each triangle
+    of the fan splits it in three. In a third of the meshes all points are multiples of 1/2 pixel,
+    so that edges go through centres of pixels; in another third they are multiples of 1/8 pixel.
+    Some triangles have no area.
     """
     grain = rng.choice([1, GRID // 8, GRID // 2], (count, 1))
 
-    def between(low, high):
-        share = rng.random(np.broadcast_shapes(low.shape, high.shape))
-        return low + (np.floor(share * ((high - low) // grain + 1)) * grain).astype(np.int64)
+    def between(low: Ints, high: Ints) -> Ints:
+        fraction = rng.random(np.broadcast_shapes(low.shape, high.shape))
+        return low + (np.floor(fraction * ((high - low) // grain + 1)) * grain).astype(np.int64)
 
-    whole = MESH_DOTS * GRID
+    whole = MESH_PIXELS * GRID
     low = between(np.zeros((count, 2), np.int64), np.full((count, 2), whole // 3))
     high = between(np.full((count, 2), whole // 3 + GRID), np.full((count, 2), whole))
     mid = between(np.repeat(low, 2, axis=1), np.repeat(high, 2, axis=1))
     (x0, y0), (x1, y1) = low.T, high.T
     top, bottom, left, right = mid[:, 0], mid[:, 1], mid[:, 2], mid[:, 3]
-    # Around the outline from the upper left; the fourth point of a side lies between its ends.
+    # Points of the outline, clockwise from the upper left: each corner, then a point on the side.
     outline_x = np.stack([x0, top, x1, x1, x1, bottom, x0, x0], axis=1)
     outline_y = np.stack([y0, y0, y0, right, y1, y1, y1, left], axis=1)
     centre = between(low, high)
@@ -579,84 +615,78 @@ def random_meshes(count: int, rng):
     bx, by = outline_x, outline_y
     cx, cy = np.roll(bx, -1, axis=1), np.roll(by, -1, axis=1)
 
-    def inside(px, py):
+    def inside(px: Ints, py: Ints) -> Flags:
         sides = [
             (qx - rx) * (py - ry) - (qy - ry) * (px - rx)
             for qx, qy, rx, ry in ((bx, by, ax, ay), (cx, cy, bx, by), (ax, ay, cx, cy))
         ]
         return (np.minimum.reduce(sides) >= 0) | (np.maximum.reduce(sides) <= 0)
 
-    share = np.sort(rng.random((2, count, 8)), axis=0)
-    weights = share[0], share[1] - share[0], 1 - share[1]
+    cuts = np.sort(rng.random((2, count, 8)), axis=0)
+    weights = cuts[0], cuts[1] - cuts[0], 1 - cuts[1]
     px, py = (
         (sum(w * v for w, v in zip(weights, at, strict=True)) // grain * grain).astype(np.int64)
         for at in ((ax, bx, cx), (ay, by, cy))
     )
-    good = inside(px, py)
-    px, py = np.where(good, px, ax), np.where(good, py, ay)
+    valid = inside(px, py)
+    px, py = np.where(valid, px, ax), np.where(valid, py, ay)
     x = [np.stack(t, axis=-1) for t in ((px, ax, bx), (px, bx, cx), (px, cx, ax))]
     y = [np.stack(t, axis=-1) for t in ((py, ay, by), (py, by, cy), (py, cy, ay))]
     return np.concatenate(x, axis=1), np.concatenate(y, axis=1), low, high
 
 
-def shared_edges(meshes: int, seed: int = 75, progress: Callable[[float], None] | None = None):
-    """Dots of `meshes` random triangulations that are covered wrongly: {"meshes", "triangles",
-    "dots", "gaps", "doubles", "outside"}. All but the first three must be 0."""
+def shared_edges(
+    meshes: int, seed: int = 75, progress: Callable[[float], None] | None = None
+) -> dict[str, int]:
+    """Count the pixels of `meshes` random triangulations that are covered wrongly.
+
+    Returns a dict of counts. "meshes", "triangles", "pixels": what was tested. "gaps": pixels of a
+    rectangle without a triangle; "doubles": pixels covered twice; "outside": pixels covered outside
+    the rectangle; all three must be 0.
+    """
     rng = np.random.default_rng(seed)
-    said = dict.fromkeys(("meshes", "triangles", "dots", "gaps", "doubles", "outside"), 0)
-    while said["meshes"] < meshes:
-        count = min(5000, meshes - said["meshes"])
+    counts = dict.fromkeys(("meshes", "triangles", "pixels", "gaps", "doubles", "outside"), 0)
+    while counts["meshes"] < meshes:
+        count = min(5000, meshes - counts["meshes"])
         x, y, low, high = random_meshes(count, rng)
-        y = y + np.arange(count)[:, None, None] * MESH_DOTS * GRID
-        x, y = x.reshape(-1, 3) / GRID, y.reshape(-1, 3) / GRID
-        normal = np.zeros((len(x), 3, 3))
+        y = y + np.arange(count)[:, None, None] * MESH_PIXELS * GRID
+        px, py = x.reshape(-1, 3) / GRID, y.reshape(-1, 3) / GRID
+        normal = np.zeros((len(px), 3, 3))
         triangles = visibility.set_up(
-            x, y, np.zeros(x.shape), normal, np.zeros(len(x), np.int64), two_sided=True
+            px, py, np.zeros(px.shape), normal, np.zeros(len(px), np.int64), two_sided=True
         )
-        lines = count * MESH_DOTS
-        first, end = visibility.line_range(triangles, MESH_DOTS, lines)
-        strips = visibility.cover(triangles, first, end, MESH_DOTS)
-        row = strips.y * (MESH_DOTS + 1)
-        size = lines * (MESH_DOTS + 1)
+        lines = count * MESH_PIXELS
+        first, end = visibility.line_range(triangles, MESH_PIXELS, lines)
+        strips = visibility.cover(triangles, first, end, MESH_PIXELS)
+        row = strips.y * (MESH_PIXELS + 1)
+        size = lines * (MESH_PIXELS + 1)
         change = np.bincount(row + strips.left, minlength=size)
         change = change - np.bincount(row + strips.right, minlength=size)
-        times = np.cumsum(change).reshape(count, MESH_DOTS, MESH_DOTS + 1)[..., :-1]
-        centre = np.arange(MESH_DOTS) * GRID + GRID // 2
+        covered = np.cumsum(change).reshape(count, MESH_PIXELS, MESH_PIXELS + 1)[..., :-1]
+        centre = np.arange(MESH_PIXELS) * GRID + GRID // 2
         within = (centre >= low[..., None]) & (centre < high[..., None])
         want = within[:, 1, :, None] & within[:, 0, None, :]
-        said["meshes"] += count
-        said["triangles"] += len(triangles)
-        said["dots"] += int(want.sum())
-        said["gaps"] += int((want & (times == 0)).sum())
-        said["doubles"] += int((times > 1).sum())
-        said["outside"] += int((~want & (times > 0)).sum())
+        counts["meshes"] += count
+        counts["triangles"] += len(triangles)
+        counts["pixels"] += int(want.sum())
+        counts["gaps"] += int((want & (covered == 0)).sum())
+        counts["doubles"] += int((covered > 1).sum())
+        counts["outside"] += int((~want & (covered > 0)).sum())
         if progress:
-            progress(said["meshes"] / meshes)
-    return said
+            progress(counts["meshes"] / meshes)
+    return counts
 
 
-# -- long runs -------------------------------------------------------------------------------------
+# -- error against the reference -------------------------------------------------------------------
 
 
-def random_frame(spans: int, longest: int, seed) -> Frame:
-    """`spans` legal spans of 1 to `longest` pixels: normals of all directions and lengths,
-    materials, and a few zero vectors."""
-    rng = np.random.default_rng(seed)
-    length = rng.integers(1, longest + 1, spans)
-    reach = 2.0 ** rng.uniform(-24, 0, (spans, 1))
-    first, last = reach * _directions(rng, spans), reach * _directions(rng, spans)
-    first[rng.random(spans) < 0.01] = 0
-    rows = [
-        (rng.random(3), rng.random(), rng.random(C.weight_points), float(n))
-        for n in (*EXPONENTS, *rng.uniform(1, 128, C.materials - len(EXPONENTS)))
-    ]
-    made = _between(first, last, length, rng.integers(0, C.materials, spans))
-    return _frame(made, _materials(*rows), rng.uniform(0, np.pi), bool(rng.random() < 0.5))
+def errors(frame: Frame, rgb: Ints, progress: Callable[[float], None] | None = None) -> Reals:
+    """The largest error of the three channels of each pixel, LSB, float64[n].
 
-
-def errors(frame: Frame, rgb, progress: Callable[[float], None] | None = None) -> np.ndarray:
-    """The largest error of the three channels of each pixel, float64[n], in LSB: codes int[n, 3]
-    against the reference, worked out in blocks, so that any frame fits the memory."""
+    rgb: codes int[n, 3] of the pixels of `frame`, in the order of the stream. They are compared
+    with `reference.render` in blocks, so that a frame of any size fits the memory. progress: called
+    with the part done, 0 to 1.
+    """
     ends = np.cumsum(np.maximum(frame.spans["length"], 1))
     total = int(ends[-1]) if len(ends) else 0
     cuts = np.searchsorted(ends, np.arange(BLOCK, total, BLOCK))

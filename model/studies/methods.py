@@ -1,7 +1,9 @@
-"""The configurations of the precision sweep, and the frames that they are measured on.
+# SPDX-License-Identifier: MIT
+"""Precision sweep: its configurations, and the frames on which they are measured.
 
-One curve a method: what the sweep varies along it is its `label`. Every configuration is built,
-simulated and compared with its twin like the default one.
+A method is a curve of the charts; along the curve one parameter varies, which the `label` of a
+point shows. Every configuration is built, simulated and compared with its twin, as the default
+configuration is.
 """
 
 from __future__ import annotations
@@ -9,15 +11,16 @@ from __future__ import annotations
 import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from phong75.model.config import DEFAULT, Config, Format
 
-#: The widest word that one multiplier of the chip takes.
+#: Width of the operands of a multiplier of the FPGA, bits.
 MULTIPLIER_BITS = 18
 
 _DATA = Path(__file__).parent.parent / "data"
 
-#: Scene (name or file), size (None: the file's own), and what it is there for.
+#: (scene name or file, size or None for the file's own, what the scene tests).
 FRAMES = (
     ("teapot", (320, 240), "spans of 1 to 14 pixels, n = 10"),
     (str(_DATA / "highlights.toml"), None, "facets of 22.5 degrees, n = 10, 32 and 128"),
@@ -27,26 +30,27 @@ FRAMES = (
 
 @dataclass(frozen=True)
 class Point:
-    """A configuration on a chart: `label` says where on the curve of `method` it is."""
+    """A point of the sweep: its configuration, its curve `method` and its `label` on the curve."""
 
     config: Config
     method: str
     label: str
 
 
-def of_width(bits: int, name: str = "", **changes) -> Config:
-    """The pipeline with words of `bits` bits, 10 to 18: the default's formats, all in proportion.
+def of_width(bits: int, name: str = "", **changes: Any) -> Config:
+    """The configuration with words of `bits` bits, 10 to 18; 18 gives the default formats.
 
-    Each word keeps its distance in bits from the multiplier's width: 18 gives the default. Tables
-    lose an index bit for every two bits of width, since the error of a line falls with the square
-    of its length. n keeps its format: it is a parameter, not a signal. changes: as for `replace`.
+    Every word loses 18 - bits fraction bits. Tables of lines lose one index bit per two bits of
+    width, because the error of a line falls with the square of its length. n keeps its format: the
+    exponent is a parameter, not a signal. name: of the configuration, by default width_<bits>.
+    changes: further fields of `Config`.
     """
-    less = MULTIPLIER_BITS - bits
-    half = less // 2
+    drop = MULTIPLIER_BITS - bits
+    half = drop // 2
     d = DEFAULT
 
     def narrower(fmt: Format) -> Format:
-        return Format(fmt.signed, fmt.integer, fmt.fraction - less)
+        return Format(fmt.signed, fmt.integer, fmt.fraction - drop)
 
     formats = {
         field.name: narrower(value)
@@ -56,20 +60,24 @@ def of_width(bits: int, name: str = "", **changes) -> Config:
     config = dataclasses.replace(
         d,
         name=name or f"width_{bits}",
-        log_mantissa_bits=d.log_mantissa_bits - less,
+        log_mantissa_bits=d.log_mantissa_bits - drop,
         **formats
-        | _lines(d.root_index_bits - half, d.root_value_bits - less)
-        | _parabolas(d.quadratic_index_bits - less // 3, d.quadratic_value_bits - less)
-        | _powers(d.log_index_bits - half, d.exp_index_bits - half, less),
+        | _lines(d.root_index_bits - half, d.root_value_bits - drop)
+        | _parabolas(d.quadratic_index_bits - drop // 3, d.quadratic_value_bits - drop)
+        | _powers(d.log_index_bits - half, d.exp_index_bits - half, drop),
         reciprocal_index_bits=d.reciprocal_index_bits - half,
-        reciprocal_value_bits=d.reciprocal_value_bits - less,
-        reciprocal_slope_bits=d.reciprocal_slope_bits - less + half,
+        reciprocal_value_bits=d.reciprocal_value_bits - drop,
+        reciprocal_slope_bits=d.reciprocal_slope_bits - drop + half,
     )
     return dataclasses.replace(config, **changes)
 
 
 def _lines(index_bits: int, value_bits: int) -> dict:
-    """The table of lines for 1/sqrt: the first slope is half a segment's length."""
+    """Fields of `Config` for a table of lines for 1/sqrt.
+
+    The largest slope, times the length of a segment, is half that length; this sets the width of
+    the slopes.
+    """
     return {
         "root_index_bits": index_bits,
         "root_value_bits": value_bits,
@@ -78,7 +86,11 @@ def _lines(index_bits: int, value_bits: int) -> dict:
 
 
 def _parabolas(index_bits: int, value_bits: int) -> dict:
-    """The table of parabolas for 1/sqrt: slope as for lines; the first curve is 3/8 length**2."""
+    """Fields of `Config` for a table of parabolas for 1/sqrt.
+
+    The slopes are as wide as those of `_lines`. The largest curvature term is 3/8 length**2; this
+    sets the width of the curvatures.
+    """
     return {
         "quadratic_index_bits": index_bits,
         "quadratic_value_bits": value_bits,
@@ -87,29 +99,36 @@ def _parabolas(index_bits: int, value_bits: int) -> dict:
     }
 
 
-def _powers(log_index_bits: int, exp_index_bits: int, less: int = 0) -> dict:
-    """The tables of log2 and 2**-f in words `less` bits narrower; slopes that fit a multiplier."""
+def _powers(log_index_bits: int, exp_index_bits: int, drop: int = 0) -> dict:
+    """Fields of `Config` for the tables of log2 and 2**-f.
+
+    The words are `drop` bits narrower than the default's; the slopes of the lines fit a multiplier.
+    """
     d = DEFAULT
-    # The steepest line of log2 rises 2.9 times its length (in v); half as many segments as codes.
-    log_fraction = min(d.log_value.fraction - less, MULTIPLIER_BITS - 1 + log_index_bits)
+    # A segment has the length 2**-(log_index_bits + 1) in v, and the steepest line of log2 rises by
+    # 2.9 times the length: less than 2**(log_fraction + 1 - log_index_bits) codes.
+    log_fraction = min(d.log_value.fraction - drop, MULTIPLIER_BITS - 1 + log_index_bits)
     return {
         "log_index_bits": log_index_bits,
         "log_value": Format(False, 0, log_fraction),
         "log_slope_bits": log_fraction + 1 - log_index_bits,
         "exp_index_bits": exp_index_bits,
-        "exp_slope_bits": d.exp_value.fraction - less - exp_index_bits,
+        "exp_slope_bits": d.exp_value.fraction - drop - exp_index_bits,
     }
 
 
 def _operand(index_bits: int) -> dict:
-    """An operand of 1/sqrt short enough that the place in a segment fits a multiplier."""
+    """A format of the operand of 1/sqrt for which the offset in a segment fits a multiplier."""
     fraction = min(DEFAULT.root_operand.fraction, MULTIPLIER_BITS - 1 + index_bits)
     return {"root_operand": Format(False, 2, fraction)}
 
 
 def _interpolator(fraction: int) -> Config:
-    """Interpolators of `fraction` bits. Only where those are fewer than the normalizer's are its
-    mantissas shorter, too: there is nothing to fill them with."""
+    """The default configuration with interpolators of `fraction` fraction bits.
+
+    If these are fewer than the fraction bits of the normalizer's mantissas, the mantissas get as
+    short.
+    """
     d = DEFAULT
     mantissa = min(d.mantissa.fraction, fraction)
     operand = min(d.root_operand.fraction, 2 * mantissa - 3)
@@ -119,12 +138,13 @@ def _interpolator(fraction: int) -> Config:
     )  # fmt: skip
 
 
-def _root(name: str, **changes) -> Config:
+def _variant(name: str, **changes: Any) -> Config:
+    """The default configuration with another name and `changes`."""
     return dataclasses.replace(DEFAULT, name=name, **changes)
 
 
 def points() -> list[Point]:
-    """All points of the sweep, curve by curve; the first is the default."""
+    """All points of the sweep, curve by curve; the first point is the default configuration."""
     out = [Point(DEFAULT, "default", "18 bits")]
     out += [
         Point(_interpolator(f), "interpolator bits", f"{f} fraction bits")
@@ -133,14 +153,14 @@ def points() -> list[Point]:
     out += [Point(of_width(w), "word width", f"{w} bits") for w in range(10, MULTIPLIER_BITS)]
     out += [
         Point(
-            _root(f"lines_{2 << k}", **_operand(k), **_lines(k, min(21, 16 + k))),
+            _variant(f"lines_{2 << k}", **_operand(k), **_lines(k, min(21, 16 + k))),
             "1/sqrt: lines", f"{2 << k} lines",
         )
         for k in range(2, DEFAULT.root_index_bits)
     ]  # fmt: skip
     out += [
         Point(
-            _root(
+            _variant(
                 f"parabolas_{2 << k}", root_method="quadratic", **_operand(k),
                 **_parabolas(k, min(21, 16 + k)),
             ),
@@ -150,14 +170,14 @@ def points() -> list[Point]:
     ]  # fmt: skip
     out += [
         Point(
-            _root(f"table_{2 << k}", root_method="table", start_index_bits=k),
+            _variant(f"table_{2 << k}", root_method="table", start_index_bits=k),
             "1/sqrt: table only", f"{2 << k} constants",
         )
         for k in (2, 4, 6, 8, 10)
     ]  # fmt: skip
     out += [
         Point(
-            _root(
+            _variant(
                 f"table_{2 << k}_newton", root_method="table", start_index_bits=k,
                 root_newton_steps=1,
             ),
@@ -167,14 +187,14 @@ def points() -> list[Point]:
     ]  # fmt: skip
     out += [
         Point(
-            _root(f"fast_inverse_{steps}", root_method="fast_inverse", root_newton_steps=steps),
+            _variant(f"fast_inverse_{steps}", root_method="fast_inverse", root_newton_steps=steps),
             "1/sqrt: 0x5f3759df + Newton", f"{steps} step{'s' * (steps != 1)}",
         )
         for steps in range(3)
     ]  # fmt: skip
-    out.append(Point(_root("not_normalized", normal_method="none"), "not normalized", "18 bits"))
+    out.append(Point(_variant("not_normalized", normal_method="none"), "not normalized", "18 bits"))
     out += [
-        Point(_root(f"power_tables_{1 << k}", **_powers(k, k)), "power: tables", f"2 x {1 << k}")
+        Point(_variant(f"power_tables_{1 << k}", **_powers(k, k)), "power: tables", f"2 x {1 << k}")
         for k in range(3, DEFAULT.log_index_bits)
     ]
     out += [
@@ -196,5 +216,5 @@ def points() -> list[Point]:
     return out
 
 
-#: The sweep's configurations by name.
+#: {name: configuration} of the sweep.
 CONFIGS = {point.config.name: point.config for point in points()}

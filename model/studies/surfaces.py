@@ -1,7 +1,8 @@
-"""The surfaces behind meshes: which point the eye sees at a dot, and how the normal turns there.
+# SPDX-License-Identifier: MIT
+"""Smooth surfaces behind the meshes: visible point and normal per pixel, change of the normal.
 
-Sphere and torus are met by rays in closed form or as roots of a quartic, the Bezier patch by
-Newton's method, so that what a mesh loses can be measured against the surface itself.
+With these a mesh can be compared with the surface itself. Rays are intersected with the sphere in
+closed form, with the torus as roots of a quartic, and with the Bezier patch by Newton's method.
 """
 
 from __future__ import annotations
@@ -12,32 +13,45 @@ from typing import Protocol
 
 import numpy as np
 
+from phong75.model.arrays import Flags, Reals
 from phong75.model.front import shapes
 from phong75.model.front.mesh import Mesh, normalize
 from phong75.model.front.shapes import bernstein, bernstein_slope
 
 
 class Surface(Protocol):
-    """A smooth surface of which meshes can be made, finer and finer."""
+    """A smooth surface with meshes of several resolutions."""
 
-    name: str
-    levels: tuple[int, ...]  # numbers of steps once round (patch: from border to border)
+    @property
+    def name(self) -> str:
+        """The key of the surface in SURFACES."""
+
+    @property
+    def levels(self) -> tuple[int, ...]:
+        """Numbers of steps of the meshes: around the axis, for the patch from border to border."""
 
     def mesh(self, level: int) -> Mesh:
-        """The mesh with `level` steps, its corners on the surface with the surface's normals."""
+        """The mesh with `level` steps; its corners and normals are those of the surface."""
 
-    def see(self, origin: np.ndarray, back: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """What rays meet first that run through `origin` (float64[n, 3]) against `back` (unit
-        float64[3], towards the eye): whether anything, bool[n], and unit normals there."""
+    def see(self, origin: Reals, back: Reals) -> tuple[Flags, Reals]:
+        """The first intersection of parallel rays with the surface.
 
-    def turn(self, mesh: Mesh, tangent: np.ndarray) -> np.ndarray:
-        """How the unit normal changes at the corners of `mesh` for steps `tangent` (float64
-        [F, 3, 3]) in the tangent plane: float64[F, 3, 3]."""
+        origin: float64[n, 3], a point of each ray. back: float64[3], unit vector towards the eye;
+        the rays go along -back. Returns (hit, normal): bool[n], and float64[n, 3], the unit
+        normals at the intersections.
+        """
+
+    def turn(self, mesh: Mesh, tangent: Reals) -> Reals:
+        """Change of the unit normal at the corners of `mesh` for small steps on the surface.
+
+        tangent: float64[F, 3, 3], a step in the tangent plane at each corner. Returns the
+        derivative of the normal along the step, float64[F, 3, 3].
+        """
 
 
 @dataclass(frozen=True)
 class Sphere:
-    """The unit sphere, half as many rings as segments."""
+    """The unit sphere; its meshes have half as many rings as segments."""
 
     name: str = "sphere"
     levels: tuple[int, ...] = (8, 16, 32, 64, 128, 256)
@@ -46,21 +60,21 @@ class Sphere:
         """See `Surface`."""
         return shapes.sphere(1.0, level, level // 2)
 
-    def see(self, origin, back):
+    def see(self, origin: Reals, back: Reals) -> tuple[Flags, Reals]:
         """See `Surface`."""
         along = origin @ back
         foot = origin - along[:, None] * back
         square = 1.0 - np.sum(foot * foot, axis=1)
         return square >= 0, foot + np.sqrt(np.maximum(square, 0.0))[:, None] * back
 
-    def turn(self, mesh, tangent):
-        """See `Surface`: the normal is the point."""
+    def turn(self, mesh: Mesh, tangent: Reals) -> Reals:
+        """See `Surface`: the normal of the unit sphere is the point itself."""
         return tangent
 
 
 @dataclass(frozen=True)
 class Torus:
-    """A torus round the z axis, radii 1 and `tube`, half as many sides as segments."""
+    """A torus around the z axis, radii 1 and `tube`; half as many sides as segments."""
 
     name: str = "torus"
     levels: tuple[int, ...] = (8, 16, 32, 64, 128, 256)
@@ -71,11 +85,11 @@ class Torus:
         return shapes.torus(1.0, self.tube, level, level // 2)
 
     def normal(self, points: np.ndarray) -> np.ndarray:
-        """Unit normals at `points` (float64[..., 3]), along the normal's line also off it."""
+        """Unit normals at `points` (float64[..., 3]) on or near the torus."""
         ring = points[..., :2] / np.linalg.norm(points[..., :2], axis=-1, keepdims=True)
         return normalize(points - np.concatenate([ring, np.zeros_like(ring[..., :1])], axis=-1))
 
-    def see(self, origin, back):
+    def see(self, origin: Reals, back: Reals) -> tuple[Flags, Reals]:
         """See `Surface`: the largest real root of (|P|^2 + 1 - r^2)^2 = 4 (x^2 + y^2)."""
         a, b = origin @ back, np.sum(origin * origin, axis=1) + 1.0 - self.tube**2
         xy, direction = origin[:, :2], back[:2]
@@ -94,20 +108,21 @@ class Torus:
         t = np.max(np.where(real, roots.real, -np.inf), axis=1)
         hit = np.isfinite(t)
         t = np.where(hit, t, 0.0)
-        for _ in range(2):  # polished, but where the ray only just touches
+        for _ in range(2):  # Newton's method, except where the ray is nearly tangent
             value, slope = _polynomial(quartic, t), _polynomial(quartic * [4, 3, 2, 1, 0], t, 4)
             t = t - np.where(np.abs(slope) > 1e-6, value / np.where(slope == 0, 1, slope), 0.0)
         return hit, self.normal(origin + t[:, None] * back)
 
-    def turn(self, mesh, tangent):
-        """See `Surface`: the normal is the gradient of the distance, also beside the surface."""
+    def turn(self, mesh: Mesh, tangent: Reals) -> Reals:
+        """See `Surface`: difference of normals off the surface, which `normal` defines as well."""
         points, step = mesh.vertices[mesh.faces], 1e-5
         return (self.normal(points + step * tangent) - self.normal(points - step * tangent)) / (
             2 * step
         )
 
 
-def _polynomial(coefficients, t, terms: int = 5):
+def _polynomial(coefficients: Reals, t: Reals, terms: int = 5) -> Reals:
+    """The polynomial of the first `terms` of `coefficients` (float64[n, 5]) at t (float64[n])."""
     value = np.zeros_like(t)
     for k in range(terms):
         value = value * t + coefficients[:, k]
@@ -116,7 +131,7 @@ def _polynomial(coefficients, t, terms: int = 5):
 
 @dataclass(frozen=True)
 class Patch:
-    """A patch of the teapot: the upper body, a quarter of the way round."""
+    """A patch of the teapot: one quarter of the upper body."""
 
     name: str = "patch"
     levels: tuple[int, ...] = (1, 2, 4, 8, 16, 32)
@@ -124,15 +139,15 @@ class Patch:
 
     @cached_property
     def control(self) -> np.ndarray:
-        """float64[4, 4, 3]: the control points, by u, then v."""
+        """The control points, float64[4, 4, 3], indices u, v."""
         return shapes.teapot_patch(self.number)
 
     def mesh(self, level: int) -> Mesh:
         """See `Surface`."""
         return shapes.patch_mesh(self.control, level)
 
-    def at(self, u: np.ndarray, v: np.ndarray):
-        """Points, dS/du and dS/dv at parameters `u`, `v` (float64[n]), float64[n, 3] each."""
+    def at(self, u: Reals, v: Reals) -> list[Reals]:
+        """Points, dS/du and dS/dv at the parameters `u`, `v` (float64[n]), float64[n, 3] each."""
         in_u, in_v = (bernstein(u), bernstein_slope(u)), (bernstein(v), bernstein_slope(v))
         return [
             (in_u[i][:, :, None] * in_v[j][:, None, :]).reshape(-1, 16)
@@ -140,55 +155,60 @@ class Patch:
             for i, j in ((0, 0), (1, 0), (0, 1))
         ]
 
-    def see(self, origin, back):
-        """See `Surface`: Newton's method from the nearest of a grid of points of the patch.
+    def see(self, origin: Reals, back: Reals) -> tuple[Flags, Reals]:
+        """See `Surface`: Newton's method from the nearest point of a grid on the patch.
 
-        A view is meant in which no ray meets the patch twice.
+        Valid only for views in which no ray meets the patch twice.
         """
         axis = np.eye(3)[np.argmin(np.abs(back))]
         right = normalize(np.cross(axis, back))
         screen = np.stack([right, np.cross(back, right)])
-        want, hull = origin @ screen.T, self.control.reshape(-1, 3) @ screen.T
-        near = np.all((want >= hull.min(axis=0)) & (want <= hull.max(axis=0)), axis=1)
-        hit, normal = np.zeros(len(want), bool), np.zeros((len(want), 3))
-        hit[near], normal[near] = self._solve(want[near], screen)
+        target, hull = origin @ screen.T, self.control.reshape(-1, 3) @ screen.T
+        near = np.all((target >= hull.min(axis=0)) & (target <= hull.max(axis=0)), axis=1)
+        hit, normal = np.zeros(len(target), bool), np.zeros((len(target), 3))
+        hit[near], normal[near] = self._solve(target[near], screen)
         return hit, normal
 
-    def _solve(self, want, screen):
-        """Where the patch is at `want` (float64[n, 2]) on the `screen` (float64[2, 3]), if it is,
-        and its normals there."""
+    def _solve(self, target: Reals, screen: Reals) -> tuple[Flags, Reals]:
+        """The points of the patch that are projected to `target`.
+
+        target: float64[n, 2], screen coordinates. screen: float64[2, 3], axes of the screen.
+        Returns (hit, normal) as `see` does.
+        """
         grid = np.linspace(0, 1, 33)
         u0, v0 = (c.reshape(-1) for c in np.meshgrid(grid, grid))
-        known = self.at(u0, v0)[0] @ screen.T
-        nearest = np.empty(len(want), np.int64)
-        for block in np.array_split(np.arange(len(want)), len(want) // 20_000 + 1):
-            away = np.sum(known * known, axis=1) - 2 * want[block] @ known.T
-            nearest[block] = np.argmin(away, axis=1)
+        start = self.at(u0, v0)[0] @ screen.T
+        nearest = np.empty(len(target), np.int64)
+        for block in np.array_split(np.arange(len(target)), len(target) // 20_000 + 1):
+            distance = np.sum(start * start, axis=1) - 2 * target[block] @ start.T
+            nearest[block] = np.argmin(distance, axis=1)
         u, v = u0[nearest], v0[nearest]
         for _ in range(8):
             point, du, dv = self.at(u, v)
-            miss, a, b = want - point @ screen.T, du @ screen.T, dv @ screen.T
+            miss, a, b = target - point @ screen.T, du @ screen.T, dv @ screen.T
             det = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
             det = np.where(np.abs(det) < 1e-12, 1e-12, det)
             u = np.clip(u + (miss[:, 0] * b[:, 1] - miss[:, 1] * b[:, 0]) / det, -0.2, 1.2)
             v = np.clip(v + (a[:, 0] * miss[:, 1] - a[:, 1] * miss[:, 0]) / det, -0.2, 1.2)
         point, du, dv = self.at(u, v)
-        met = np.linalg.norm(want - point @ screen.T, axis=1) < 1e-10
-        hit = met & (np.minimum(u, v) >= 0) & (np.maximum(u, v) <= 1)
+        converged = np.linalg.norm(target - point @ screen.T, axis=1) < 1e-10
+        hit = converged & (np.minimum(u, v) >= 0) & (np.maximum(u, v) <= 1)
         return hit, normalize(np.cross(dv, du))
 
-    def turn(self, mesh, tangent):
-        """See `Surface`: by the parameters of the corners."""
+    def turn(self, mesh: Mesh, tangent: Reals) -> Reals:
+        """See `Surface`: the step is converted to the parameters u and v of each corner."""
         steps = round(len(mesh.vertices) ** 0.5) - 1
         corner = mesh.faces.reshape(-1)
         u, v = (corner % (steps + 1)) / steps, (corner // (steps + 1)) / steps
         _, du, dv = self.at(u, v)
         basis = np.stack([du, dv], axis=-1)
         step = np.einsum("nij,nj->ni", np.linalg.pinv(basis), tangent.reshape(-1, 3)) * 1e-5
-        ahead, behind = (
-            normalize(np.cross(*self.at(u + s * step[:, 0], v + s * step[:, 1])[:0:-1]))
-            for s in (1, -1)
-        )
+
+        def normal(u: Reals, v: Reals) -> Reals:
+            _, du, dv = self.at(u, v)
+            return normalize(np.cross(dv, du))
+
+        ahead, behind = (normal(u + s * step[:, 0], v + s * step[:, 1]) for s in (1, -1))
         return ((ahead - behind) / 2e-5).reshape(tangent.shape)
 
 

@@ -1,35 +1,39 @@
-"""What a mesh loses against the surface behind it, by shading technique, as it is refined.
+# SPDX-License-Identifier: MIT
+"""Tessellation study: error of a shaded mesh against the true surface, by technique and mesh size.
 
-The measure is the shading of the true surface: eq. (3) with the exact normal of the point that the
-eye sees at the centre of each dot. Mesh and surface cover different dots along their outlines;
-what is compared are the dots that both cover.
+The true picture is eq. (3) of the paper with the exact normal of the surface point that is visible
+at the centre of each pixel. Mesh and surface cover different pixels along their outlines; only
+pixels that both cover are compared.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
 from phong75.model.analysis import reference
+from phong75.model.arrays import Reals
 from phong75.model.config import DEFAULT, TECHNIQUES
 from phong75.model.frame import Frame
 from phong75.model.front import scene_to_spans, visibility
 from phong75.model.front.camera import Camera, light_frame, view_axes
 from phong75.model.front.mesh import Mesh, apply_matrix, normalize
 from phong75.model.front.scene import Material, Scene, SceneObject
-from phong75.model.front.scene_to_spans import front_end
 from phong75.model.front.visibility import GRID
+from phong75.model.scene_to_frame import front_end
 from phong75.model.studies.surfaces import SURFACES, Surface
-from phong75.model.twin import render
+from phong75.model.twin import Pixels, render
 
 SIZE = (640, 480)
-#: No channel saturates: a clamp would hide errors.
+#: The default material. No channel saturates, because a clamp would hide errors.
 MATERIAL = Material((0.55, 0.45, 0.35), 0.15, 10.0, (0.0, 1.0), (0.4, 0.4))
 LIGHT = (-0.5, 0.6, 1.0)  # relative to the camera
-#: Directions towards the eye, and heights of the picture: the torus hides no part of itself, and
-#: no part of the patch is turned away by more than 60 degrees.
+#: {surface: (direction towards the eye, height of the picture in scene units)}. In these views the
+#: torus hides no part of itself, and the patch's normals are within 60 degrees of the eye.
 VIEWS = {
     "sphere": ((1, -2, 1.5), 2.3),
     "torus": ((0.2, -0.4, 1.0), 2.9),
@@ -38,22 +42,40 @@ VIEWS = {
 METHODS = (*TECHNIQUES, "cubic")
 
 
-def scene_of(surface: Surface, mesh: Mesh, size=SIZE, material: Material = MATERIAL) -> Scene:
-    """A picture of `mesh`, in a view that depends on `surface` but not on the mesh."""
+def scene_of(
+    surface: Surface, mesh: Mesh, size: tuple[int, int] = SIZE, material: Material = MATERIAL
+) -> Scene:
+    """The scene that shows `mesh`. The view depends on `surface`, not on the mesh.
+
+    size: (width, height), pixels.
+    """
     back, height = VIEWS[surface.name]
     axes = view_axes(back, (0.0, 0.0, 1.0))
+    assert axes is not None  # no view is along z
     middle = surface.mesh(4).vertices
     target = (middle.min(axis=0) + middle.max(axis=0)) / 2
     camera = Camera("orthographic", axes, target, target + 10 * axes[2], height)
     light = normalize(np.asarray(LIGHT) @ axes)
     objects = [SceneObject(surface.name, mesh, 0)]
     return Scene(
-        surface.name, *size, (0.0, 0.0, 0.0), camera, light, False, "linear", objects, [material]
+        surface.name,
+        size[0],
+        size[1],
+        (0.0, 0.0, 0.0),
+        camera,
+        light,
+        False,
+        "linear",
+        objects,
+        [material],
     )
 
 
-def shade(normal, scene: Scene, material: Material) -> np.ndarray:
-    """255 S by eq. (3) in float64 for normals in the scene's axes, float64[n, 3]."""
+def shade(normal: Reals, scene: Scene, material: Material) -> Reals:
+    """255 S by eq. (3) in float64: float64[n, 3].
+
+    normal: float64[n, 3], any length, scene axes.
+    """
     axes, eye = light_frame(scene.light, scene.camera.axes[2])
     cp, d = np.array(material.color), material.d
     weight = material.weight(np.linspace(0, 1, DEFAULT.weight_points))
@@ -66,9 +88,14 @@ def shade(normal, scene: Scene, material: Material) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Truth:
-    """The surface in a picture of `width` dots a line: covered bool[dots]; value float64[dots, 3],
-    255 S; facing float64[dots], cosine of the angle between normal and eye; highlight bool[dots],
-    where the specular term is more than half of its largest."""
+    """The picture of a true surface; arrays have one row per pixel, n = width * height.
+
+    width: pixels per scan line.
+    covered: bool[n], whether the surface is visible in the pixel.
+    value: float64[n, 3], 255 S.
+    facing: float64[n], cosine of the angle between normal and eye.
+    highlight: bool[n], whether the specular term is more than half of its maximum.
+    """
 
     width: int
     covered: np.ndarray
@@ -78,8 +105,8 @@ class Truth:
 
 
 @lru_cache(maxsize=8)
-def truth(name: str, size=SIZE, material: Material = MATERIAL) -> Truth:
-    """The picture of the surface `name` itself."""
+def truth(name: str, size: tuple[int, int] = SIZE, material: Material = MATERIAL) -> Truth:
+    """The picture of the true surface `name` (a key of SURFACES)."""
     surface = SURFACES[name]
     scene = scene_of(surface, surface.mesh(4), size, material)
     right, up, back = scene.camera.axes
@@ -97,29 +124,40 @@ def truth(name: str, size=SIZE, material: Material = MATERIAL) -> Truth:
 
 @dataclass(frozen=True)
 class Picture:
-    """A mesh shaded: the dots it covers (y * width + x) and 255 S there, before any rounding."""
+    """A shaded mesh.
 
-    dot: np.ndarray
+    pixel: int64[n], covered pixels as y * width + x. value: float64[n, 3], 255 S there.
+    """
+
+    pixel: np.ndarray
     value: np.ndarray
 
 
-def shaded(surface: Surface, level: int, technique: str, size=SIZE, material=MATERIAL):
-    """Frame (for the hardware) and Picture of the mesh with `level` steps."""
+def shaded(
+    surface: Surface,
+    level: int,
+    technique: str,
+    size: tuple[int, int] = SIZE,
+    material: Material = MATERIAL,
+) -> tuple[Frame, Picture]:
+    """Frame (for the hardware) and Picture (before any rounding) of the mesh with `level` steps."""
     scene = scene_of(surface, surface.mesh(level), size, material)
     config = TECHNIQUES[technique]
-    made = front_end(scene, config)
-    pixels = render(made.frame, config)
-    value = reference.render_exact(made.frame, made.exact, config)
-    return made.frame, Picture(pixels.y * size[0] + pixels.x, value)
+    front = front_end(scene, config)
+    pixels = render(front.frame, config)
+    value = reference.render_exact(front.frame, front.exact, config)
+    return front.frame, Picture(pixels.y * size[0] + pixels.x, value)
 
 
-def cubic(surface: Surface, level: int, size=SIZE, material=MATERIAL) -> Picture:
-    """The mesh shaded by a cubic interpolant of the intensity, the paper's other candidate.
+def cubic(
+    surface: Surface, level: int, size: tuple[int, int] = SIZE, material: Material = MATERIAL
+) -> Picture:
+    """The mesh shaded by cubic interpolation of the intensity, which Phong (1975) mentions.
 
-    Over each triangle the Bezier cubic with intensities and their gradients on the screen at the
-    vertices, which are those of the surface, and the centre point that keeps quadratics (Farin).
-    Near the outline, where gradients grow without bound, they are those of a surface that is
-    turned away from the eye by no more than acos(0.1).
+    Over each triangle the intensity is a cubic Bezier triangle. At the vertices it has the
+    intensities of the surface and their gradients on the screen; its centre point is Farin's, which
+    reproduces quadratics. Near the outline the gradients grow without bound; there the angle
+    between normal and eye is limited to acos(0.1).
     """
     mesh = surface.mesh(level)
     scene = scene_of(surface, mesh, size, material)
@@ -127,9 +165,9 @@ def cubic(surface: Surface, level: int, size=SIZE, material=MATERIAL) -> Picture
     pixel = scene.camera.height / size[1]
     normal = mesh.normals
     corners = [shade(normal.reshape(-1, 3), scene, material)]
-    for across, sign in ((right, 1.0), (up, -1.0)):
-        slope = (normal @ across) / np.maximum(normal @ back, 0.1)
-        tangent = sign * pixel * (across - slope[..., None] * back)
+    for axis, sign in ((right, 1.0), (up, -1.0)):
+        slope = (normal @ axis) / np.maximum(normal @ back, 0.1)
+        tangent = sign * pixel * (axis - slope[..., None] * back)
         tangent -= np.sum(tangent * normal, axis=-1, keepdims=True) * normal
         change = 1e-3 * surface.turn(mesh, tangent)
         ahead, behind = (
@@ -143,56 +181,67 @@ def cubic(surface: Surface, level: int, size=SIZE, material=MATERIAL) -> Picture
         screen[..., 0], screen[..., 1], scene.camera.depth(w, screen[..., 3]), value,
         np.zeros(len(mesh.faces), np.int64), False,
     )  # fmt: skip
-    dots, values = [], []
+    pixels, values = [], []
     for segments, _ in scene_to_spans.visible(triangles, *size):
         length = segments.right - segments.left
         row = np.repeat(np.arange(len(segments)), length)
         x = np.arange(len(row)) - np.repeat(np.cumsum(length) - length, length) + segments.left[row]
         t, y = segments.triangle[row], segments.y[row]
-        dots.append(y * size[0] + x)
-        place = np.stack([triangles.x[t], triangles.y[t]], axis=-1) / GRID
-        values.append(_bezier(place, triangles.value[t], np.stack([x, y], axis=-1) + 0.5))
-    return Picture(np.concatenate(dots), np.clip(np.concatenate(values), 0.0, 255.0))
+        pixels.append(y * size[0] + x)
+        corner = np.stack([triangles.x[t], triangles.y[t]], axis=-1) / GRID
+        values.append(_bezier(corner, triangles.value[t], np.stack([x, y], axis=-1) + 0.5))
+    return Picture(np.concatenate(pixels), np.clip(np.concatenate(values), 0.0, 255.0))
 
 
-def _bezier(corner, value, point):
-    """float64[n, 3]: the cubics through `value` (float64[n, 3, 9]: intensities, their slopes along
-    x, along y) at `corner` (float64[n, 3, 2]), at `point` (float64[n, 2])."""
+def _bezier(corner: Reals, value: Reals, point: Reals) -> Reals:
+    """Evaluate cubic Bezier triangles: float64[n, 3].
+
+    corner: float64[n, 3, 2], vertices on the screen. value: float64[n, 3, 9], at each vertex three
+    intensities, their derivatives along x, and along y. point: float64[n, 2].
+    """
     a, b, c = (corner[:, k] for k in range(3))
 
-    def area(p, q, r):
+    def area(p: Reals, q: Reals, r: Reals) -> Reals:
         return (q[:, 0] - p[:, 0]) * (r[:, 1] - p[:, 1]) - (r[:, 0] - p[:, 0]) * (q[:, 1] - p[:, 1])
 
     whole = area(a, b, c)
-    share = np.stack([area(point, b, c), area(a, point, c), area(a, b, point)]) / whole
+    weight = np.stack([area(point, b, c), area(a, point, c), area(a, b, point)]) / whole
     s, gx, gy = value[..., :3], value[..., 3:6], value[..., 6:]
-    total, beside = np.zeros_like(s[:, 0]), np.zeros_like(s[:, 0])
+    total, controls = np.zeros_like(s[:, 0]), np.zeros_like(s[:, 0])
     for i in range(3):
-        total += share[i][:, None] ** 3 * s[:, i]
+        total += weight[i][:, None] ** 3 * s[:, i]
         for j in range(3):
             if i != j:
-                way = corner[:, j] - corner[:, i]
-                control = s[:, i] + (gx[:, i] * way[:, :1] + gy[:, i] * way[:, 1:]) / 3
-                beside += control
-                total += 3 * (share[i] ** 2 * share[j])[:, None] * control
-    centre = beside / 4 - s.sum(axis=1) / 6
-    return total + 6 * np.prod(share, axis=0)[:, None] * centre
+                edge = corner[:, j] - corner[:, i]
+                control = s[:, i] + (gx[:, i] * edge[:, :1] + gy[:, i] * edge[:, 1:]) / 3
+                controls += control
+                total += 3 * (weight[i] ** 2 * weight[j])[:, None] * control
+    centre = controls / 4 - s.sum(axis=1) / 6
+    return total + 6 * np.prod(weight, axis=0)[:, None] * centre
 
 
-def errors(picture: Picture, name: str, size=SIZE, material=MATERIAL, where: str = "all") -> dict:
-    """How far `picture` is from the surface's, in LSB, on the dots that both cover.
+def errors(
+    picture: Picture,
+    name: str,
+    size: tuple[int, int] = SIZE,
+    material: Material = MATERIAL,
+    where: str = "all",
+) -> dict[str, Any]:
+    """Error of `picture` against the true surface `name`, in LSB, on the pixels that both cover.
 
-    where: "all"; "facing", dots whose normal is within 60 degrees of the eye; "highlight".
+    where: which pixels count: "all"; "facing", normals within 60 degrees of the eye; "highlight",
+    see `Truth`. Returns the number of pixels, and maximum, RMS, 99.9 % quantile and mean of the
+    error's magnitude.
     """
     true = truth(name, size, material)
-    kept = true.covered[picture.dot]
+    counted = true.covered[picture.pixel]
     if where == "facing":
-        kept &= true.facing[picture.dot] >= 0.5
+        counted &= true.facing[picture.pixel] >= 0.5
     elif where == "highlight":
-        kept &= true.highlight[picture.dot]
-    error = np.abs(picture.value[kept] - true.value[picture.dot[kept]])
+        counted &= true.highlight[picture.pixel]
+    error = np.abs(picture.value[counted] - true.value[picture.pixel[counted]])
     return {
-        "dots": int(kept.sum()),
+        "pixels": int(counted.sum()),
         "max_lsb": float(error.max()),
         "rms_lsb": float(np.sqrt(np.mean(error**2))),
         "p999_lsb": float(np.quantile(error, 0.999, method="higher")),
@@ -201,19 +250,21 @@ def errors(picture: Picture, name: str, size=SIZE, material=MATERIAL, where: str
 
 
 def distance(a: Picture, b: Picture) -> float:
-    """RMS difference of two pictures of one mesh, in LSB."""
-    first, second = np.argsort(a.dot), np.argsort(b.dot)
-    assert np.array_equal(a.dot[first], b.dot[second])
+    """RMS difference of two pictures of the same mesh, LSB."""
+    first, second = np.argsort(a.pixel), np.argsort(b.pixel)
+    assert np.array_equal(a.pixel[first], b.pixel[second])
     return float(np.sqrt(np.mean((a.value[first] - b.value[second]) ** 2)))
 
 
-def order(levels, values, last: int = 4) -> float:
-    """The order of convergence: minus the slope of log `values` over log `levels`, least squares
-    over the `last` of them."""
+def order(levels: Sequence[float], values: Sequence[float], last: int = 4) -> float:
+    """Order of convergence: minus the slope of log `values` over log `levels`.
+
+    The slope is a least squares fit over the `last` points.
+    """
     slope = np.polyfit(np.log(levels[-last:]), np.log(values[-last:]), 1)[0]
     return float(-slope)
 
 
-def as_picture(frame: Frame, pixels) -> Picture:
-    """The Picture of codes that came out of the pipeline (`Pixels`)."""
+def as_picture(frame: Frame, pixels: Pixels) -> Picture:
+    """The Picture of the pipeline's output `pixels` (`Pixels`)."""
     return Picture(pixels.y * frame.width + pixels.x, pixels.rgb.astype(np.float64))

@@ -1,6 +1,11 @@
-// colour_channel: the paper's eq. (3) for one of red, green, blue, summed, clamped and coded,
-//   S = Cp d + Cp (1 - d) cos(i) + specular, code = floor(255 clamp(S, 0, 1) + 1/2).
-// One result a clock; latency below, counted from cosine and lit.
+// SPDX-License-Identifier: MIT
+// colour_channel: Phong 1975, eq. (3), for one of red, green and blue: terms, sum, clamp and code,
+//   S = Cp d + Cp (1 - d) cos(i) + W(i) cos(s)^n, code = floor(255 clamp(S, 0, 1) + 1/2).
+// Cp d is the ambient coefficient, Cp (1 - d) the diffuse one.
+// Latency: LATENCY cycles from `cosine` and `lit` (PHONG_COLOUR_CHANNEL_LATENCY in latency.vh; 7 by
+// default).
+// Throughput: one result per cycle.
+// Reset: none; the tables are undefined until written.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
@@ -13,40 +18,45 @@ module colour_channel #(
     parameter COSINE_FRACTION      = `PHONG_COSINE_FRACTION,
     parameter SPECULAR_BITS        = `PHONG_WEIGHT_BITS + `PHONG_POWER_BITS,
     parameter SPECULAR_FRACTION    = `PHONG_WEIGHT_FRACTION + `PHONG_POWER_FRACTION,
-    parameter INTENSITY_BITS       = `PHONG_INTENSITY_BITS,
+    parameter INTENSITY_BITS       = `PHONG_INTENSITY_BITS,        // S, clamped and cut
     parameter INTENSITY_FRACTION   = `PHONG_INTENSITY_FRACTION,
     parameter COLOUR_BITS          = `PHONG_COLOUR_BITS,
-    parameter SPECULAR             = `PHONG_SPECULAR,
-    parameter DIFFUSE              = `PHONG_DIFFUSE,
-    parameter AMBIENT          = `PHONG_AMBIENT,
-    parameter CONSTANT_AMBIENT     = `PHONG_CONSTANT_AMBIENT,  // 1: Cp d is AMBIENT_CODE
-    parameter AMBIENT_CODE              = `PHONG_CONSTANT_AMBIENT_RED,
-    parameter CONSTANT_DIFFUSE     = `PHONG_CONSTANT_DIFFUSE,  // 1: Cp (1 - d) is DIFFUSE_CODE
-    parameter DIFFUSE_CODE            = `PHONG_CONSTANT_DIFFUSE_RED,
+    parameter SPECULAR             = `PHONG_SPECULAR,              // 0: the term is left out
+    parameter DIFFUSE              = `PHONG_DIFFUSE,               // 0: the term is left out
+    parameter AMBIENT              = `PHONG_AMBIENT,               // 0: the term is left out
+    parameter CONSTANT_AMBIENT     = `PHONG_CONSTANT_AMBIENT,      // 1: Cp d is AMBIENT_CODE
+    parameter AMBIENT_CODE         = `PHONG_CONSTANT_AMBIENT_RED,  // u1.16
+    parameter CONSTANT_DIFFUSE     = `PHONG_CONSTANT_DIFFUSE,      // 1: Cp (1 - d) is DIFFUSE_CODE
+    parameter DIFFUSE_CODE         = `PHONG_CONSTANT_DIFFUSE_RED,  // u1.16
     parameter LATENCY              = `PHONG_COLOUR_CHANNEL_LATENCY
 ) (
-    input  wire                        clk,
-    input  wire                        write_ambient,   // Cp d of material write_address
-    input  wire                        write_diffuse,   // Cp (1 - d)
-    input  wire [   MATERIAL_BITS-1:0] write_address,
-    input  wire [COEFFICIENT_BITS-1:0] write_word,      // u1.16
-    input  wire [   MATERIAL_BITS-1:0] material_early,  // of the pixel one clock later
-    input  wire [     COSINE_BITS-1:0] cosine,          // u0.18, Zn
-    input  wire                        lit,             // 0: ambient only
-    input  wire [   SPECULAR_BITS-1:0] specular,        // u1.35, W(i) cos(s)^n,
-                                                        // PHONG_PRODUCTS_LATENCY later
-    output wire [     COLOUR_BITS-1:0] colour           // code
+    input wire clk,
+
+    // write port of the coefficients
+    input wire                        write_ambient,  // Cp d
+    input wire                        write_diffuse,  // Cp (1 - d)
+    input wire [MATERIAL_BITS-1:0]    write_address,  // material
+    input wire [COEFFICIENT_BITS-1:0] write_word,     // u1.16
+
+    // a pixel: its material comes 1 cycle before `cosine` and `lit`, its highlight
+    // PHONG_PRODUCTS_LATENCY cycles after them
+    input  wire [MATERIAL_BITS-1:0] material_early,  // index
+    input  wire [COSINE_BITS-1:0]   cosine,          // u0.18, Zn = cos(i)
+    input  wire                     lit,             // 0: ambient term only
+    input  wire [SPECULAR_BITS-1:0] specular,        // u1.35, W(i) cos(s)^n
+    output wire [COLOUR_BITS-1:0]   colour           // code, 0 to 255
 );
 
   localparam DIFFUSE_BITS = COEFFICIENT_BITS + COSINE_BITS;
+  // Left shifts that give diffuse and ambient term the fraction of the specular term.
   localparam DIFFUSE_SHIFT = SPECULAR_FRACTION - COEFFICIENT_FRACTION - COSINE_FRACTION;
   localparam AMBIENT_SHIFT = SPECULAR_FRACTION - COEFFICIENT_FRACTION;
-  localparam SUM_BITS = SPECULAR_FRACTION + 2;  // Cp + W is at most 2
-  localparam WAIT = `PHONG_PRODUCTS_LATENCY;
+  localparam SUM_BITS = SPECULAR_FRACTION + 2;  // Cp + W <= 2
+  localparam WAIT = `PHONG_PRODUCTS_LATENCY;    // cycles of the slowest product
 
   // ---- intensity: products ----
-  wire [COEFFICIENT_BITS-1:0] ambient_p2;
-  wire [DIFFUSE_BITS-1:0] diffuse_p2;
+  wire [COEFFICIENT_BITS-1:0] ambient_p2;  // u1.16, Cp d
+  wire [DIFFUSE_BITS-1:0] diffuse_p2;      // u1.34, Cp (1 - d) cos(i), 0 if not lit
   wire lit_p2;
 
   generate
@@ -143,9 +153,9 @@ module colour_channel #(
       .out(lit_p2)
   );
 
-  // ---- intensity: sum, clamp, cut ----
-  wire [SUM_BITS-1:0] sum_p4;
-  reg [INTENSITY_BITS-1:0] intensity_p5;
+  // ---- intensity: sum, clamp to 1, cut ----
+  wire [SUM_BITS-1:0] sum_p4;             // u2.35, S
+  reg [INTENSITY_BITS-1:0] intensity_p5;  // u1.24, S clamped
 
   wire [SUM_BITS-1:0] ambient_term = {
     {SUM_BITS - COEFFICIENT_BITS - AMBIENT_SHIFT{1'b0}}, ambient_p2, {AMBIENT_SHIFT{1'b0}}
@@ -191,7 +201,7 @@ module colour_channel #(
 
   wire unused_sum = &{1'b0, sum_p4[SPECULAR_FRACTION-INTENSITY_FRACTION-1:0]};
 
-  // ---- code: times 255, rounded ----
+  // ---- code: times 255 = 256 - 1, rounded ----
   reg [INTENSITY_BITS+COLOUR_BITS-1:0] scaled_p6;
   reg [COLOUR_BITS-1:0] colour_p7;
 

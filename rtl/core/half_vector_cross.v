@@ -1,34 +1,44 @@
-// across: the two parts of a vector across the half vector h = (hx, 0, hz): hz y and
-// hz x - hx z, rounded.
-// One result a clock; latency below.
+// SPDX-License-Identifier: MIT
+// half_vector_cross: x and y components of the cross product of a vector and the half vector
+// h = (hx, 0, hz), rounded:
+//   cross_xz = hz y, cross_y = hz x - hx z (the y component with the opposite sign).
+// The z component, -hx y, is not needed: see reflection.
+// Latency: LATENCY cycles (PHONG_HALF_VECTOR_CROSS_LATENCY in latency.vh; 6 by default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
 
 module half_vector_cross #(
-    parameter VECTOR_BITS = `PHONG_UNIT_BITS,
+    parameter VECTOR_BITS = `PHONG_UNIT_BITS,               // width of x, y, z
     parameter OUT_BITS    = `PHONG_UNIT_BITS,
     parameter HALF_BITS   = `PHONG_HALF_VECTOR_BITS,
-    parameter DROP        = `PHONG_HALF_VECTOR_FRACTION,  // bits that rounding drops
-    parameter CONSTANT    = `PHONG_CONSTANT_HALF_VECTOR,  // 1: h is a constant
+    parameter DROP        = `PHONG_HALF_VECTOR_FRACTION,    // fraction bits that rounding drops
+    parameter CONSTANT    = `PHONG_CONSTANT_HALF_VECTOR,    // 1: h is {HALF_X, 0, HALF_Z}
     parameter HALF_X      = `PHONG_CONSTANT_HALF_VECTOR_X,
     parameter HALF_Z      = `PHONG_CONSTANT_HALF_VECTOR_Z,  // 0 or more
     parameter LATENCY     = `PHONG_HALF_VECTOR_CROSS_LATENCY
 ) (
-    input  wire                   clk,
-    input  wire [  HALF_BITS-1:0] half_x,  // s0.17, held for a frame
-    input  wire [  HALF_BITS-1:0] half_z,
-    input  wire [VECTOR_BITS-1:0] x,       // two's complement; s0.17 for a unit normal
-    input  wire [VECTOR_BITS-1:0] y,
-    input  wire [VECTOR_BITS-1:0] z,
-    // hz y; in s0.17 the same, with the default's DROP
-    output wire [   OUT_BITS-1:0] cross_xz,
-    output wire [   OUT_BITS-1:0] cross_y        // hz x - hx z
+    input wire clk,
+
+    // registers, held for a frame
+    input wire [HALF_BITS-1:0] half_x,  // s0.17, half vector, x
+    input wire [HALF_BITS-1:0] half_z,  // s0.17, half vector, z
+
+    // a vector
+    input wire [VECTOR_BITS-1:0] x,  // two's complement; s0.17 for a unit normal
+    input wire [VECTOR_BITS-1:0] y,  // two's complement; s0.17 for a unit normal
+    input wire [VECTOR_BITS-1:0] z,  // two's complement; s0.17 for a unit normal
+
+    // its products; with the default DROP in the format of the vector
+    output wire [OUT_BITS-1:0] cross_xz,  // two's complement, hz y
+    output wire [OUT_BITS-1:0] cross_y    // two's complement, hz x - hx z
 );
 
   localparam PRODUCT_BITS = HALF_BITS + VECTOR_BITS;
 
-  wire [PRODUCT_BITS-1:0] zy_p3, zx_p3, xz_p3;
+  wire [PRODUCT_BITS-1:0] zy_p3, zx_p3, xz_p3;  // hz y, hz x, hx z; constant h: |hx| z
   reg [PRODUCT_BITS-1:0] cross_xz_p4;
   reg [PRODUCT_BITS:0] cross_y_p4;
 
@@ -102,7 +112,8 @@ module half_vector_cross #(
           .product(xz_p2)
       );
 
-      // Products far apart on the chip meet in one long addition, so they are fetched first.
+      // The products come from DSP blocks far apart and meet in one long addition. A register stage
+      // after the blocks leaves that addition a whole cycle.
       always @(posedge clk) begin
         zy <= zy_p2;
         zx <= zx_p2;

@@ -1,4 +1,8 @@
+// SPDX-License-Identifier: MIT
 // inverse_sqrt: 1/sqrt(x), x in [1, 4), by the method that the configuration names.
+// Latency: LATENCY cycles (PHONG_INVERSE_SQRT_LATENCY in latency.vh; 8 by default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
@@ -25,7 +29,7 @@ module inverse_sqrt (
           .operand(operand),
           .root(root)
       );
-    end else begin : gen_iterated  // table or magic
+    end else begin : gen_iterated  // method table or fast_inverse
       inverse_sqrt_iterated u_method (
           .clk(clk),
           .operand(operand),

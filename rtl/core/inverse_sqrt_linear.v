@@ -1,7 +1,10 @@
-// inverse_sqrt_linear: 1/sqrt(x), x in [1, 4), by a table of straight lines -- the paper's "very
-// fast
-// mechanism for obtaining square roots". x below 1 is read as 1 + x, so 0 gives the largest root.
-// One result a clock; latency below.
+// SPDX-License-Identifier: MIT
+// inverse_sqrt_linear: 1/sqrt(x), x in [1, 4), by a piecewise linear table, value - slope * offset:
+// the "very fast mechanism for obtaining square roots" of Phong 1975.
+// The leading bit is implied: an operand in [0, 1) stands for 1 + x, so 0 gives the largest root.
+// Latency: LATENCY cycles (PHONG_INVERSE_SQRT_LINEAR_LATENCY in latency.vh; 8 by default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
@@ -13,19 +16,19 @@ module inverse_sqrt_linear (
 );
 
   localparam OPERAND_BITS = `PHONG_ROOT_OPERAND_BITS;
-  localparam INDEX_BITS   = `PHONG_ROOT_INDEX_BITS;
-  localparam VALUE_BITS   = `PHONG_ROOT_VALUE_BITS;
-  localparam SLOPE_BITS   = `PHONG_ROOT_SLOPE_BITS;
+  localparam INDEX_BITS   = `PHONG_ROOT_INDEX_BITS;  // 2^INDEX_BITS segments per octave
+  localparam VALUE_BITS   = `PHONG_ROOT_VALUE_BITS;  // all of them fraction
+  localparam SLOPE_BITS   = `PHONG_ROOT_SLOPE_BITS;  // in units of 2^-(VALUE_BITS + 3)
   localparam ROOT_BITS    = `PHONG_ROOT_BITS;
   localparam LATENCY      = `PHONG_INVERSE_SQRT_LINEAR_LATENCY;
 
-  localparam OFFSET_BITS = OPERAND_BITS - 1 - INDEX_BITS;
-  localparam LINE_BITS   = VALUE_BITS + 3;  // slopes are three bits finer than values
+  localparam OFFSET_BITS = OPERAND_BITS - 1 - INDEX_BITS;  // place in the segment
+  localparam LINE_BITS   = VALUE_BITS + 3;                 // three bits finer than values
 
   // ---- lookup: segment and offset below the leading one ----
-  wire high = operand[OPERAND_BITS-1];
+  wire high = operand[OPERAND_BITS-1];  // x >= 2
 
-  reg [INDEX_BITS:0] address_p1;
+  reg [INDEX_BITS:0] address_p1;  // {octave, segment}
   reg [OFFSET_BITS-1:0] offset_p1;
 
   always @(posedge clk) begin

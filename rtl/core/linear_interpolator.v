@@ -1,34 +1,46 @@
-// linear_interpolator: one component of the normal along a span, by forward differences -- the
-// paper's linear interpolation (eq. 2); three work in parallel.
-// Latency 1 from load; one value a clock. Exact: nothing is rounded.
+// SPDX-License-Identifier: MIT
+// linear_interpolator: one component along a span by forward differences: the linear interpolation
+// of Phong 1975, eq. (2). Three in parallel interpolate a normal; in Gouraud shading each colour
+// channel has one.
+// At a load the value is `start`, and `step` is latched. At any other advance the held step is
+// added. The values are exact: nothing is rounded.
+// Latency: 1 cycle from `load` to the first value of the span.
+// Throughput: one value per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 
 module linear_interpolator #(
     parameter NORMAL_BITS = `PHONG_NORMAL_BITS
 ) (
-    input  wire                   clk,
-    input  wire                   advance,  // take the next value
-    input  wire                   load,     // it is start, and step comes with it; else add step
-    input  wire [NORMAL_BITS-1:0] start,    // s1.30, at the first pixel's centre
-    input  wire [NORMAL_BITS-1:0] step,     // s1.30, from pixel to pixel
-    output wire [NORMAL_BITS-1:0] value,    // s1.30, at the present pixel's centre
-    output wire                   overflow  // value has left the word since load
+    input wire clk,
+
+    // control; `load` acts only together with `advance`
+    input wire advance,  // 1: move to the next pixel
+    input wire load,     // 1: the current pixel ends its span; the next one starts from `start`
+
+    // offered span
+    input wire [NORMAL_BITS-1:0] start,  // s1.30, at the centre of the first pixel
+    input wire [NORMAL_BITS-1:0] step,   // s1.30, from pixel to pixel
+
+    // current pixel
+    output wire [NORMAL_BITS-1:0] value,    // s1.30, at the centre of the pixel
+    output wire                   overflow  // the value has left the word since the first pixel
 );
 
   localparam SIGN = NORMAL_BITS - 1;
   localparam LOW_BITS = NORMAL_BITS / 2;
   localparam HIGH_BITS = NORMAL_BITS - LOW_BITS;
 
-  // The low half runs one pixel ahead, so that its carry is a register when the high half adds:
-  // no carry runs through more than half of the word.
+  // The low half is computed one pixel ahead, so that its carry is in a register when the high half
+  // is added: no carry chain is longer than half the word.
   reg [NORMAL_BITS-1:0] step_held;
-  reg [LOW_BITS-1:0] low;
-  reg [LOW_BITS-1:0] low_next;
-  reg carry_next;  // from low to low_next
-  reg [HIGH_BITS-1:0] high;
+  reg [LOW_BITS-1:0] low;       // of the current pixel
+  reg [LOW_BITS-1:0] low_next;  // of the next pixel
+  reg carry_next;               // carry of the addition that gave low_next
+  reg [HIGH_BITS-1:0] high;     // of the current pixel
 
-  // A sum each for a load and for a step: choosing comes after the sums, since load is late.
+  // Both sums are formed, for a load and for a step; `load` arrives late and selects one of them.
   wire [LOW_BITS:0] low_loaded = {1'b0, start[LOW_BITS-1:0]} + {1'b0, step[LOW_BITS-1:0]};
   wire [LOW_BITS:0] low_stepped = {1'b0, low_next} + {1'b0, step_held[LOW_BITS-1:0]};
   wire [HIGH_BITS-1:0] high_sum =
@@ -45,10 +57,10 @@ module linear_interpolator #(
     end
   end
 
-  // ---- overflow: looked for after the addition, which takes a whole clock ----
-  reg stepped;  // value is a sum
-  reg sign_before;  // of what step was added to
-  reg overflow_held;  // overflow before that
+  // ---- overflow: detected one cycle after the addition, which takes a whole cycle ----
+  reg stepped;        // the value is a sum, not a start
+  reg sign_before;    // sign of the value before the addition
+  reg overflow_held;  // overflow of an earlier addition in the same span
   wire wrapped = stepped & (sign_before == step_held[SIGN]) & (value[SIGN] != sign_before);
 
   assign overflow = overflow_held | wrapped;

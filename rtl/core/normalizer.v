@@ -1,36 +1,50 @@
-// normalizer: an interpolated normal of any length becomes a unit normal -- the paper's "extra
-// hardware to normalize the outputs of the interpolators".
-// The components are shifted together until the largest fills the word, so that a short normal
-// loses no more direction than a long one; then m / |m| with one 1/sqrt and three products.
-// One normal a clock; latency below. The zero vector gives zeros, not lit, and is flagged.
+// SPDX-License-Identifier: MIT
+// normalizer: unit normal N / |N| of an interpolated normal of any length: the "extra hardware to
+// normalize the outputs of the interpolators" of Phong 1975.
+// Block normalization first: the components are shifted together until the largest fills the word,
+// so that a short normal loses no more direction than a long one. This gives m. Then
+//   unit normal = m / |m|: three squares, one 1/sqrt, three products.
+// By the method dot_first the x and y components of the cross product N x h (see half_vector_cross)
+// are scaled in place of x and y of m.
+// The zero vector gives zeros, is not lit, and is flagged.
+// Latency: LATENCY cycles (PHONG_NORMALIZER_LATENCY in latency.vh; 25 by default).
+// Throughput: one normal per cycle.
+// Reset: synchronous; of zero_normal only.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
 
 module normalizer (
-    input  wire                               clk,
-    input  wire                               reset,       // synchronous; of zero_normal alone
-    input  wire                               two_sided,   // 1: shade |Zn|
-    // the normal is that of a pixel; for zero_normal
-    input  wire                               valid,
-    input  wire [`PHONG_HALF_VECTOR_BITS-1:0] half_x,      // s0.17, held for a frame; for dot_first
-    input  wire [`PHONG_HALF_VECTOR_BITS-1:0] half_z,
-    input  wire [`PHONG_NORMAL_BITS-1:0]      x,           // s1.30, normal, light frame
-    input  wire [`PHONG_NORMAL_BITS-1:0]      y,
-    input  wire [`PHONG_NORMAL_BITS-1:0]      z,
-    // s0.17, unit normal; dot_first: its q across h
-    output wire [`PHONG_UNIT_BITS-1:0]        unit_x,
-    output wire [`PHONG_UNIT_BITS-1:0]        unit_y,      // dot_first: its p across h (see across)
-    output wire [`PHONG_UNIT_BITS-1:0]        unit_z,
-    output wire [`PHONG_COSINE_BITS-1:0]      cosine,      // u0.18, |Zn| = cos(i)
-    output wire                               lit,         // Zn > 0 (two-sided: Zn not 0), exact
-    output wire                               zero_normal  // for one clock, early: the zero vector
+    input wire clk,
+    input wire reset,  // synchronous
+
+    input wire two_sided,  // register, held for a frame; 1: shade |Zn|
+    input wire valid,      // 1: the normal is that of a pixel; for zero_normal only
+
+    // registers, held for a frame; for dot_first only
+    input wire [`PHONG_HALF_VECTOR_BITS-1:0] half_x,  // s0.17, half vector, x
+    input wire [`PHONG_HALF_VECTOR_BITS-1:0] half_z,  // s0.17, half vector, z
+
+    // interpolated normal
+    input wire [`PHONG_NORMAL_BITS-1:0] x,  // s1.30, normal, light frame, x
+    input wire [`PHONG_NORMAL_BITS-1:0] y,  // s1.30, y
+    input wire [`PHONG_NORMAL_BITS-1:0] z,  // s1.30, z: toward the light
+
+    // unit normal, LATENCY cycles later
+    output wire [`PHONG_UNIT_BITS-1:0]   unit_x,  // s0.17, x; dot_first: hz x - hx z
+    output wire [`PHONG_UNIT_BITS-1:0]   unit_y,  // s0.17, y; dot_first: hz y
+    output wire [`PHONG_UNIT_BITS-1:0]   unit_z,  // s0.17, z
+    output wire [`PHONG_COSINE_BITS-1:0] cosine,  // u0.18, |Zn| = |cos(i)|
+    output wire                          lit,     // Zn > 0 (two-sided: Zn not 0), exact
+
+    // PHONG_ZERO_NORMAL_LATENCY cycles after the pixel
+    output wire zero_normal  // one-cycle pulse: its normal is the zero vector
 );
 
-  localparam METHOD            = `PHONG_NORMAL_METHOD;  // dot_first: dot products, then scale
+  localparam METHOD            = `PHONG_NORMAL_METHOD;
   localparam HALF_FRACTION     = `PHONG_HALF_VECTOR_FRACTION;
   localparam NORMAL_BITS       = `PHONG_NORMAL_BITS;
-  localparam MANTISSA_BITS     = `PHONG_MANTISSA_BITS;
+  localparam MANTISSA_BITS     = `PHONG_MANTISSA_BITS;   // of a component of m
   localparam MANTISSA_FRACTION = `PHONG_MANTISSA_FRACTION;
   localparam OPERAND_BITS      = `PHONG_ROOT_OPERAND_BITS;
   localparam OPERAND_FRACTION  = `PHONG_ROOT_OPERAND_FRACTION;
@@ -42,18 +56,18 @@ module normalizer (
   localparam COSINE_FRACTION   = `PHONG_COSINE_FRACTION;
   localparam CONSTANT_SHIFT    = `PHONG_CONSTANT_SHIFT;  // 1: all normals are shifted by SHIFT
   localparam SHIFT             = `PHONG_CONSTANT_SHIFT_BY;
-  localparam SPECULAR          = `PHONG_SPECULAR;  // 0: only cosine is of use
-  localparam TWO_SIDED         = `PHONG_TWO_SIDED;  // 0: where Zn < 0, cosine is of no use
+  localparam SPECULAR          = `PHONG_SPECULAR;        // 0: only `cosine` is used
+  localparam TWO_SIDED         = `PHONG_TWO_SIDED;       // 0: `cosine` is not used where Zn < 0
   localparam LATENCY           = `PHONG_NORMALIZER_LATENCY;
 
   localparam SHIFT_BITS   = $clog2(NORMAL_BITS);
   localparam SQUARE_BITS  = 2 * MANTISSA_BITS;
-  localparam ONE          = 2 * MANTISSA_FRACTION;  // bit of weight 1 in a square
-  localparam OPERAND_DROP = ONE - OPERAND_FRACTION;
+  localparam ONE          = 2 * MANTISSA_FRACTION;   // bit of weight 1 in a square
+  localparam OPERAND_DROP = ONE - OPERAND_FRACTION;  // low bits of |m|^2 cut off
   localparam PRODUCT_BITS = MANTISSA_BITS + ROOT_BITS;
   localparam PRODUCT_FRACTION = MANTISSA_FRACTION + ROOT_FRACTION;
 
-  // ---- lit: decided on the interpolated Zn itself ----
+  // ---- lit: the sign of the interpolated Zn, before any rounding ----
   reg lit_p1;
 
   always @(posedge clk) lit_p1 <= (z != 0) & (two_sided | ~z[NORMAL_BITS-1]);
@@ -67,7 +81,7 @@ module normalizer (
       .out(lit)
   );
 
-  // ---- leading_zeros: of the largest component ----
+  // ---- leading_zeros: the shift that brings the largest component to the top ----
   localparam SHIFT_LATENCY = CONSTANT_SHIFT ? 0 : 1 + `PHONG_LEADING_ZEROS_LATENCY;
 
   wire [SHIFT_BITS-1:0] shift_p3;
@@ -75,9 +89,9 @@ module normalizer (
   generate
     if (CONSTANT_SHIFT) begin : gen_constant_shift
       assign shift_p3 = SHIFT;
-      assign zero_normal = 1'b0;  // that of another size is found by span_guard
+      assign zero_normal = 1'b0;  // span_guard flags it, as of another size
     end else begin : gen_shift
-      reg [NORMAL_BITS-2:0] ones_p1;
+      reg [NORMAL_BITS-2:0] ones_p1;  // bits in which any component differs from its sign
 
       always @(posedge clk) begin
         ones_p1 <= (x[NORMAL_BITS-2:0] ^ {NORMAL_BITS - 1{x[NORMAL_BITS-1]}})
@@ -94,12 +108,12 @@ module normalizer (
           .count(shift_p3)
       );
 
-      // The zero vector: no bit below the signs, and none of the signs.
+      // zero: the zero vector has no bit that differs from its sign, and no negative sign.
       localparam [SHIFT_BITS-1:0] NO_BIT = NORMAL_BITS[SHIFT_BITS-1:0] - 1'b1;
 
       reg sign_p1, zero;
       wire sign_p3;
-      reg [SHIFT_LATENCY-1:0] in_flight;
+      reg [SHIFT_LATENCY-1:0] in_flight;  // `valid` of the last cycles
 
       always @(posedge clk) begin
         sign_p1 <= x[NORMAL_BITS-1] | y[NORMAL_BITS-1] | z[NORMAL_BITS-1];
@@ -121,18 +135,19 @@ module normalizer (
     end
   endgenerate
 
-  // ---- what is scaled: the components, or the parts across h and z ----
-  // |m| may be up to sqrt(3), so those parts have one fraction bit less.
+  // ---- the words to be scaled: x, y, z of m; dot_first: hz x - hx z, hz y and z ----
+  // |m| may be up to sqrt(3), so the products with h have one fraction bit less.
+  // ROOT_WAIT: cycles from m to 1/|m|.
   localparam ROOT_WAIT = `PHONG_MULTIPLIER_LATENCY + 2 + 1 + `PHONG_INVERSE_SQRT_LATENCY;
   localparam DOT_FIRST = METHOD == `PHONG_NORMAL_METHOD_DOT_FIRST;
-  localparam LESS = DOT_FIRST ? 1 : 0;
+  localparam LESS = DOT_FIRST ? 1 : 0;  // fraction bits less
 
-  wire [3*MANTISSA_BITS-1:0] mantissas_p7;
-  wire [3*MANTISSA_BITS-1:0] scaled_in;
+  wire [3*MANTISSA_BITS-1:0] mantissas_p7;  // m, {z, y, x}
+  wire [3*MANTISSA_BITS-1:0] scaled_in;     // operands of the products with 1/|m|
 
   generate
     if (DOT_FIRST) begin : gen_across
-      wire [2*MANTISSA_BITS-1:0] parts;  // {p, q}
+      wire [2*MANTISSA_BITS-1:0] parts;  // {cross_xz, cross_y}
 
       half_vector_cross #(
           .VECTOR_BITS(MANTISSA_BITS),
@@ -184,8 +199,8 @@ module normalizer (
   localparam X = 0, Y = 1, Z = 2;
 
   wire [SQUARE_BITS-1:0] square_p9[X:Z];
-  wire [ROOT_BITS-1:0] root;
-  wire below_one;
+  wire [ROOT_BITS-1:0] root;  // u0.18, 1/sqrt of the operand
+  wire below_one;             // 1: the operand is 4 |m|^2, so the products are doubled
   wire [UNIT_BITS-1:0] unit[X:Z];
   wire [PRODUCT_BITS:0] product[X:Z];
   wire [PRODUCT_BITS-1:0] scaled_z;
@@ -302,7 +317,7 @@ module normalizer (
     sum_p11 <= sum_xy_p10 + square_z_p10;
   end
 
-  // ---- root_operand: into [1, 4), four times if below 1 ----
+  // ---- root_operand: |m|^2, or 4 |m|^2 if |m|^2 < 1, in [1, 4) ----
   wire below_one_p11 = ~|sum_p11[SQUARE_BITS-1:ONE];
 
   reg [OPERAND_BITS-1:0] operand_p12;
@@ -331,15 +346,16 @@ module normalizer (
       .out(below_one)
   );
 
-  // ---- round: |Zn| with one bit more than the unit normal ----
-  // -z is ~z + 1; that 1 reaches the kept bits only through the half that rounding adds, so both
-  // are one carry and |Zn| costs no adder of its own.
-  localparam COSINE_DROP = PRODUCT_FRACTION - COSINE_FRACTION;
+  // ---- round: |Zn|, with one bit more than the unit normal ----
+  // Rounding z half up adds `half`, the highest of the dropped bits. For z < 0 the magnitude is
+  // ~z + 1, and this 1 is part of the same carry: the carry into the kept bits is ~half, or 1 if
+  // all bits below `half` are 0. So |Zn| needs no adder of its own.
+  localparam COSINE_DROP = PRODUCT_FRACTION - COSINE_FRACTION;  // low bits dropped
   localparam MAGNITUDE_BITS = PRODUCT_BITS + 1 - COSINE_DROP;
 
   wire negative = (TWO_SIDED != 0) & product[Z][PRODUCT_BITS];
   wire half = product[Z][COSINE_DROP-1];
-  reg below_half_zero;  // all bits below the half
+  reg below_half_zero;  // all bits below `half` are 0
 
   always @(posedge clk) begin
     below_half_zero <= ~|scaled_z[COSINE_DROP-3:0] & (below_one | ~scaled_z[COSINE_DROP-2]);

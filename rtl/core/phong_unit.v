@@ -1,46 +1,52 @@
-// phong_unit: the paper's proposal, between the walker and the FIFO: three interpolators in
-// parallel
-// for the normal, a normalizer, the shading function.
-// One pixel a clock; PHONG_PIXEL_LATENCY clocks from a pixel of the walker to its colour.
-// Wiring in data order.
+// SPDX-License-Identifier: MIT
+// phong_unit: Phong shading, the hardware proposed in Phong 1975: three interpolators in parallel
+// for the normal, a normalizer and a unit for the shading function.
+// The module holds the wiring, in data order.
+// Latency: PHONG_PIXEL_LATENCY cycles from a pixel of span_walker to its colour (see latency.vh; 74
+// by default).
+// Throughput: one pixel per cycle.
+// Reset: synchronous; of the flags only.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
 
 module phong_unit (
     input wire clk,
-    input wire reset,  // synchronous; of the flags only
+    input wire reset,  // synchronous
 
-    // write port for registers and material table (see register_map); hold during a frame
-    input wire                                                   write_enable,
-    input wire [`PHONG_MATERIAL_BITS+`PHONG_WEIGHT_INDEX_BITS:0] write_address,
-    input wire [2*`PHONG_COEFFICIENT_BITS:0]                     write_word,
+    // write port of registers and material table; write between frames only
+    input wire                                                   write_enable,   // 1: write
+    input wire [`PHONG_MATERIAL_BITS+`PHONG_WEIGHT_INDEX_BITS:0] write_address,  // see register_map
+    input wire [2*`PHONG_COEFFICIENT_BITS:0]                     write_word,     // see register_map
 
-    // a span, in the clock in which it is taken
-    input wire                            taken,
-    input wire [6*`PHONG_NORMAL_BITS-1:0] values,    // {step z, y, x, start z, y, x}, s1.30
+    // offered span
+    input wire                            taken,     // the span is accepted in this cycle
+    input wire [6*`PHONG_NORMAL_BITS-1:0] values,    // {step z, y, x, start z, y, x}, s1.30 each
     input wire [`PHONG_COORDINATE_BITS:0] length,    // pixels
-    input wire [`PHONG_MATERIAL_BITS-1:0] material,
+    input wire [`PHONG_MATERIAL_BITS-1:0] material,  // index
 
-    // its pixels
-    input wire                              load,            // this one is the last of its span
-    input wire                              advance,         // to the next one
-    input wire                              pixel_valid,
-    input wire [`PHONG_COORDINATE_BITS-1:0] pixel_x,
-    input wire [`PHONG_COORDINATE_BITS-1:0] pixel_y,
-    input wire [`PHONG_MATERIAL_BITS-1:0]   pixel_material,
+    // control from span_walker; `load` acts only together with `advance`
+    input wire load,     // 1: the current pixel ends its span; the next one starts from `values`
+    input wire advance,  // 1: move to the next pixel
 
-    output wire [`PHONG_COLOUR_BITS-1:0] red,          // codes
-    output wire [`PHONG_COLOUR_BITS-1:0] green,
-    output wire [`PHONG_COLOUR_BITS-1:0] blue,
-    output wire                          overflow,     // a component has left its word since load
-    // for one clock: a pixel's is the zero vector
-    output wire                          zero_normal,
-    // for one clock: this build leaves something out
-    output wire                          unsupported
+    // current pixel
+    input wire                              pixel_valid,     // the pixel leaves the interpolators
+    input wire [`PHONG_COORDINATE_BITS-1:0] pixel_x,         // pixels
+    input wire [`PHONG_COORDINATE_BITS-1:0] pixel_y,         // pixels
+    input wire [`PHONG_MATERIAL_BITS-1:0]   pixel_material,  // index
+
+    // colour of a pixel
+    output wire [`PHONG_COLOUR_BITS-1:0] red,    // code, 0 to 255
+    output wire [`PHONG_COLOUR_BITS-1:0] green,  // code, 0 to 255
+    output wire [`PHONG_COLOUR_BITS-1:0] blue,   // code, 0 to 255
+
+    // flags
+    output wire overflow,     // a component has left its word since the first pixel of the span
+    output wire zero_normal,  // one-cycle pulse: the normal of a pixel is the zero vector
+    output wire unsupported   // one-cycle pulse: a write or a span needs what this build leaves out
 );
 
-  localparam HOLD_UNLIT       = `PHONG_HOLD_UNLIT;
+  localparam HOLD_UNLIT       = `PHONG_HOLD_UNLIT;      // 1: unlit pixels toggle nothing
   localparam NORMAL_METHOD    = `PHONG_NORMAL_METHOD;
   localparam NORMAL_BITS      = `PHONG_NORMAL_BITS;
   localparam MATERIAL_BITS    = `PHONG_MATERIAL_BITS;
@@ -50,10 +56,10 @@ module phong_unit (
   localparam UNIT_BITS        = `PHONG_UNIT_BITS;
   localparam COSINE_BITS      = `PHONG_COSINE_BITS;
   localparam VERSINE_BITS     = `PHONG_VERSINE_BITS;
-  localparam INTERPOLATE_X    = `PHONG_INTERPOLATE_X;
+  localparam INTERPOLATE_X    = `PHONG_INTERPOLATE_X;   // 0: the component is constant over a span
   localparam INTERPOLATE_Y    = `PHONG_INTERPOLATE_Y;
   localparam INTERPOLATE_Z    = `PHONG_INTERPOLATE_Z;
-  localparam IDLE_STEP_BITS   = `PHONG_IDLE_STEP_BITS;
+  localparam IDLE_STEP_BITS   = `PHONG_IDLE_STEP_BITS;  // top bits of a step that repeat its sign
 
   // ---- registers ----
   wire [HALF_BITS-1:0] half_x, half_z;
@@ -83,7 +89,9 @@ module phong_unit (
 
   assign unsupported = unsupported_write | unsupported_span;
 
-  // ---- spans: what none has in this build is constant from here on; the guard finds those ----
+  // ---- spans ----
+  // In a pruned build, step components and step bits that no span uses are constant from here on.
+  // span_guard flags the spans that do use them.
   wire [NORMAL_BITS-1:0] start_x, start_y, start_z;
   wire [NORMAL_BITS-1:0] step_x, step_y, step_z;
   wire [NORMAL_BITS-1:0] normal_x, normal_y, normal_z;
@@ -203,7 +211,7 @@ module phong_unit (
           .lit(lit_normal)
       );
 
-      assign zero_normal = 1'b0;  // nobody divides by its length
+      assign zero_normal = 1'b0;  // nothing is divided by the length of the normal
 
       wire unused = &{1'b0, held_valid};
     end else begin : gen_normalized

@@ -1,23 +1,32 @@
-// reflection: 1 - cos(s), the versine of the angle between the reflected ray and the eye.
-// The paper's cos(s) = 2 Zn (N.u) - u_z is a small difference from 1 near a highlight. With the
-// unit vector h = (hx, 0, hz) halfway between light and eye the same quantity is a sum of squares,
+// SPDX-License-Identifier: MIT
+// reflection: 1 - cos(s), the versine of the angle s between the reflected ray and the eye.
+// Phong 1975 has cos(s) = 2 Zn (N.u) - u_z, where u is the direction of the eye. Near a highlight
+// this is a small difference from 1. With the half vector h = (hx, 0, hz), the unit vector halfway
+// between light and eye, the same quantity is a sum of two squares,
 //   1 - cos(s) = 2 ((hz Yn)^2 + (hz Xn - hx Zn)^2),
-// accurate relative to itself, so that cos(s)^n loses little for any n.
-// It is even in N: turning a normal toward the light does not change it.
-// One result a clock; latency below.
+// whose relative error is small everywhere, so that cos(s)^n loses little for any n. The squares
+// are those of the x and y components of the cross product N x h. (Lyon 1993 uses |R - u|^2 / 2 in
+// the same spirit, with more products.)
+// The result is even in N: turning a normal toward the light does not change it.
+// Latency: LATENCY cycles (PHONG_REFLECTION_LATENCY in latency.vh; 12 by default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
 
 module reflection (
-    input  wire                               clk,
-    input  wire [`PHONG_HALF_VECTOR_BITS-1:0] half_x,  // s0.17, held for a frame
-    input  wire [`PHONG_HALF_VECTOR_BITS-1:0] half_z,
-    input  wire [`PHONG_UNIT_BITS-1:0]        unit_x,  // s0.17, unit normal
-    input  wire [`PHONG_UNIT_BITS-1:0]        unit_y,
-    input  wire [`PHONG_UNIT_BITS-1:0]        unit_z,
-    // u0.22, 1 - cos(s); all ones where cos(s) <= 0
-    output wire [`PHONG_VERSINE_BITS-1:0]     versine
+    input wire clk,
+
+    // registers, held for a frame
+    input wire [`PHONG_HALF_VECTOR_BITS-1:0] half_x,  // s0.17, half vector, x
+    input wire [`PHONG_HALF_VECTOR_BITS-1:0] half_z,  // s0.17, half vector, z
+
+    // a pixel
+    input  wire [`PHONG_UNIT_BITS-1:0]    unit_x,  // s0.17, unit normal, x
+    input  wire [`PHONG_UNIT_BITS-1:0]    unit_y,  // s0.17, y
+    input  wire [`PHONG_UNIT_BITS-1:0]    unit_z,  // s0.17, z
+    output wire [`PHONG_VERSINE_BITS-1:0] versine  // u0.22, 1 - cos(s); all ones if cos(s) <= 0
 );
 
   localparam UNIT_BITS = `PHONG_UNIT_BITS;

@@ -1,64 +1,76 @@
-// register_map: the write port: registers, and strobes for the material table.
-// Write only between frames: what is written changes the pixels in flight.
-// Latency 1 to the strobes, 2 to the registers.
+// SPDX-License-Identifier: MIT
+// register_map: decodes the write port: holds the registers, and strobes the material table.
+// Write only between frames: a write changes the pixels in flight.
+//
+//   address                  word
+//   {0, material, interval}  {step s1.16, left u1.16}: W(i) over an interval of Zn
+//   {1, material, field}     a field of the material, or a register (of any material); the indices
+//                            are the PHONG_FIELD_ macros of the configuration
+//
+// Latency: 1 cycle from a write to the strobes, 2 to the registers, 4 to `unsupported`.
+// Throughput: one write per cycle.
+// Reset: none; registers are undefined until written.
 `default_nettype none
 `include "phong_config.vh"
 
 module register_map #(
-    parameter MATERIAL_BITS        = `PHONG_MATERIAL_BITS,
-    parameter INDEX_BITS           = `PHONG_WEIGHT_INDEX_BITS,
-    parameter COEFFICIENT_BITS     = `PHONG_COEFFICIENT_BITS,
-    parameter HALF_BITS            = `PHONG_HALF_VECTOR_BITS,
-    parameter EXPONENT_BITS        = `PHONG_EXPONENT_BITS,
-    parameter EXPONENT_FRACTION    = `PHONG_EXPONENT_FRACTION,
-    parameter POWER_BITS           = `PHONG_POWER_BITS,
-    parameter SPECULAR             = `PHONG_SPECULAR,
-    parameter POWER_FUNCTION       = `PHONG_POWER_FUNCTION,
-    parameter POWER_BYPASS         = `PHONG_POWER_BYPASS,
-    parameter LOG_OCTAVES          = `PHONG_LOG_OCTAVES,
-    parameter WEIGHT_FUNCTION      = `PHONG_WEIGHT_FUNCTION,
-    parameter DIFFUSE              = `PHONG_DIFFUSE,
-    parameter AMBIENT          = `PHONG_AMBIENT,
-    parameter CHANNELS             = `PHONG_CHANNELS,
-    parameter TWO_SIDED            = `PHONG_TWO_SIDED,
-    parameter CONSTANT_HALF_VECTOR = `PHONG_CONSTANT_HALF_VECTOR,
-    parameter CONSTANT_X           = `PHONG_CONSTANT_HALF_VECTOR_X,
-    parameter CONSTANT_Z           = `PHONG_CONSTANT_HALF_VECTOR_Z,
-    parameter CONSTANT_EXPONENT    = `PHONG_CONSTANT_EXPONENT,
-    parameter CONSTANT_WEIGHT      = `PHONG_CONSTANT_WEIGHT,
-    parameter CONSTANT_AMBIENT     = `PHONG_CONSTANT_AMBIENT,
-    parameter CONSTANT_DIFFUSE     = `PHONG_CONSTANT_DIFFUSE
+    parameter MATERIAL_BITS     = `PHONG_MATERIAL_BITS,
+    parameter INDEX_BITS        = `PHONG_WEIGHT_INDEX_BITS,  // of an interval, and of a field
+    parameter COEFFICIENT_BITS  = `PHONG_COEFFICIENT_BITS,
+    parameter HALF_BITS         = `PHONG_HALF_VECTOR_BITS,
+    parameter EXPONENT_BITS     = `PHONG_EXPONENT_BITS,
+    parameter EXPONENT_FRACTION = `PHONG_EXPONENT_FRACTION,
+    parameter POWER_BITS        = `PHONG_POWER_BITS,
+
+    // features of the build; 0: left out
+    parameter SPECULAR        = `PHONG_SPECULAR,         // highlight, W(i) cos(s)^n
+    parameter POWER_FUNCTION  = `PHONG_POWER_FUNCTION,   // cos(s)^n for n other than 1
+    parameter POWER_BYPASS    = `PHONG_POWER_BYPASS,     // n = 1 beside other n
+    parameter LOG_OCTAVES     = `PHONG_LOG_OCTAVES,      // n so small that (1/2)^n is not 0
+    parameter WEIGHT_FUNCTION = `PHONG_WEIGHT_FUNCTION,  // W that depends on i
+    parameter DIFFUSE         = `PHONG_DIFFUSE,          // Cp (1 - d) cos(i)
+    parameter AMBIENT         = `PHONG_AMBIENT,          // Cp d
+    parameter CHANNELS        = `PHONG_CHANNELS,         // 3: red, green, blue; 1: grey
+    parameter TWO_SIDED       = `PHONG_TWO_SIDED,        // |Zn| in place of Zn
+
+    // constants of the build; 0: written at run time
+    parameter CONSTANT_HALF_VECTOR = `PHONG_CONSTANT_HALF_VECTOR,    // h of all frames
+    parameter CONSTANT_X           = `PHONG_CONSTANT_HALF_VECTOR_X,  // s0.17
+    parameter CONSTANT_Z           = `PHONG_CONSTANT_HALF_VECTOR_Z,  // s0.17
+    parameter CONSTANT_EXPONENT    = `PHONG_CONSTANT_EXPONENT,       // n of all materials
+    parameter CONSTANT_WEIGHT      = `PHONG_CONSTANT_WEIGHT,         // W of all materials
+    parameter CONSTANT_AMBIENT     = `PHONG_CONSTANT_AMBIENT,        // Cp d of all materials
+    parameter CONSTANT_DIFFUSE     = `PHONG_CONSTANT_DIFFUSE         // Cp (1 - d) of all materials
 ) (
     input wire clk,
 
-    // address {0, material, interval}: word {step s1.16, left u1.16} of W(i)
-    // address {1, material, field}: fields below
-    input wire                                write_enable,
-    input wire [MATERIAL_BITS+INDEX_BITS:0] write_address,
-    input wire [      2*COEFFICIENT_BITS:0] write_word,
+    // write port
+    input wire                              write_enable,   // 1: write
+    input wire [MATERIAL_BITS+INDEX_BITS:0] write_address,  // see above
+    input wire [2*COEFFICIENT_BITS:0]       write_word,     // see above
 
     // registers
-    output wire [HALF_BITS-1:0] half_x,  // s0.17
-    output wire [HALF_BITS-1:0] half_z,
-    output wire                 two_sided,
+    output wire [HALF_BITS-1:0] half_x,     // s0.17, half vector, x
+    output wire [HALF_BITS-1:0] half_z,     // s0.17, half vector, z; y is 0
+    output wire                 two_sided,  // 1: shade |Zn|
 
-    // material table
-    output reg                                write_weight,
-    output reg                                write_exponent,
-    output reg [                         2:0] write_ambient,  // blue, green, red
-    output reg [                         2:0] write_diffuse,
-    output reg [MATERIAL_BITS+INDEX_BITS-1:0] table_address,
-    output reg [        2*COEFFICIENT_BITS:0] table_word,
+    // strobes for the material table, with address and word
+    output reg                                write_weight,    // W(i) over an interval
+    output reg                                write_exponent,  // n
+    output reg [2:0]                          write_ambient,   // Cp d of {blue, green, red}
+    output reg [2:0]                          write_diffuse,   // Cp (1 - d) of {blue, green, red}
+    output reg [MATERIAL_BITS+INDEX_BITS-1:0] table_address,   // {material, interval or field}
+    output reg [2*COEFFICIENT_BITS:0]         table_word,      // write_word, one cycle later
 
-    output wire unsupported  // for one clock: a word asks for what this build leaves out
+    output wire unsupported  // one-cycle pulse: a word needs what this build leaves out
 );
 
-  localparam [INDEX_BITS-1:0] AMBIENT_RED = `PHONG_FIELD_AMBIENT;
-  localparam [INDEX_BITS-1:0] DIFFUSE_RED = `PHONG_FIELD_DIFFUSE;
-  localparam [INDEX_BITS-1:0] EXPONENT = `PHONG_FIELD_EXPONENT;
-  localparam [INDEX_BITS-1:0] HALF_X = `PHONG_FIELD_HALF_X;  // of any material
-  localparam [INDEX_BITS-1:0] HALF_Z = `PHONG_FIELD_HALF_Z;
-  localparam [INDEX_BITS-1:0] CONTROL = `PHONG_FIELD_CONTROL;  // bit 0: two-sided
+  localparam [INDEX_BITS-1:0] AMBIENT_RED = `PHONG_FIELD_AMBIENT;  // u1.16, then green, blue
+  localparam [INDEX_BITS-1:0] DIFFUSE_RED = `PHONG_FIELD_DIFFUSE;  // u1.16, then green, blue
+  localparam [INDEX_BITS-1:0] EXPONENT = `PHONG_FIELD_EXPONENT;    // u8.9
+  localparam [INDEX_BITS-1:0] HALF_X = `PHONG_FIELD_HALF_X;        // s0.17, register
+  localparam [INDEX_BITS-1:0] HALF_Z = `PHONG_FIELD_HALF_Z;        // s0.17, register
+  localparam [INDEX_BITS-1:0] CONTROL = `PHONG_FIELD_CONTROL;      // register, bit 0: two-sided
 
   wire is_weight = ~write_address[MATERIAL_BITS+INDEX_BITS];
   wire [INDEX_BITS-1:0] field = write_address[INDEX_BITS-1:0];
@@ -106,9 +118,9 @@ module register_map #(
     end
   endgenerate
 
-  // ---- words that ask for what is left out ----
-  // From this n on 2^-n is 0 in the word of cos(s)^n.
-  localparam [EXPONENT_BITS-1:0] ONE = 1 << EXPONENT_FRACTION;
+  // ---- unsupported: words that need what is left out ----
+  localparam [EXPONENT_BITS-1:0] ONE = 1 << EXPONENT_FRACTION;  // n = 1
+  // The least n for which 2^-n is 0 in the word of cos(s)^n.
   localparam [EXPONENT_BITS-1:0] VANISHES = (POWER_BITS + 1) << EXPONENT_FRACTION;
 
   wire [COEFFICIENT_BITS-1:0] code = table_word[COEFFICIENT_BITS-1:0];
@@ -124,7 +136,8 @@ module register_map #(
       assign unsupported = 1'b0;
       wire unused = &{1'b0, code, step, n, half, ONE, VANISHES};
     end else begin : gen_check
-      // Nobody waits for the flag: what the word is, whether that is missing where it goes to, any.
+      // The flag is not timing critical. Three register stages: classify the word and its target,
+      // compare with what is missing, OR.
       reg nonzero_word, nonzero_code, nonzero_step, is_one, is_small, asks_two_sided;
       reg other_x, other_z, other_n, other_w;
       reg [2:0] other_ambient, other_diffuse;
@@ -152,7 +165,7 @@ module register_map #(
         other_diffuse[2] <= code != `PHONG_CONSTANT_DIFFUSE_BLUE;
         to_x <= write_half_x;
         to_z <= write_half_z;
-        to_n <= write_exponent & (SPECULAR != 0);  // else no exponent is of use
+        to_n <= write_exponent & (SPECULAR != 0);  // without highlight n has no effect
         to_control <= write_control;
         to_weight <= write_weight;
         to_ambient <= write_ambient;

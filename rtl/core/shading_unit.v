@@ -1,7 +1,11 @@
-// shading_unit: the paper's eq. (3) for red, green and blue,
+// SPDX-License-Identifier: MIT
+// shading_unit: the shading function of Phong 1975, eq. (3), for red, green and blue,
 //   S = Cp [cos(i) (1 - d) + d] + W(i) cos(s)^n = Cp d + Cp (1 - d) cos(i) + W(i) cos(s)^n.
 // The material table holds the products Cp d and Cp (1 - d), which saves a multiplier.
-// One pixel a clock; latency below. Wiring in data order.
+// The module holds the wiring, in data order.
+// Latency: LATENCY cycles (PHONG_SHADING_UNIT_LATENCY in latency.vh; 49 by default).
+// Throughput: one pixel per cycle.
+// Reset: none; the material table is undefined until written.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
@@ -9,30 +13,34 @@
 module shading_unit (
     input wire clk,
 
-    // registers and material table, held for a frame
-    input wire [`PHONG_HALF_VECTOR_BITS-1:0]                       half_x,          // s0.17
-    input wire [`PHONG_HALF_VECTOR_BITS-1:0]                       half_z,
-    input wire                                                     write_weight,
-    input wire                                                     write_exponent,
-    // blue, green, red
-    input wire [2:0]                                               write_ambient,
-    input wire [2:0]                                               write_diffuse,
-    // {material, interval}
+    // registers, held for a frame
+    input wire [`PHONG_HALF_VECTOR_BITS-1:0] half_x,  // s0.17, half vector, x
+    input wire [`PHONG_HALF_VECTOR_BITS-1:0] half_z,  // s0.17, half vector, z
+
+    // write port of the material table, from register_map
+    input wire       write_weight,    // W(i) over an interval
+    input wire       write_exponent,  // n
+    input wire [2:0] write_ambient,   // Cp d of {blue, green, red}
+    input wire [2:0] write_diffuse,   // Cp (1 - d) of {blue, green, red}
+
+    // its address: {material, interval or field}; its word: {step s1.16, left u1.16} of W(i),
+    // n in u8.9, Cp d or Cp (1 - d) in u1.16
     input wire [`PHONG_MATERIAL_BITS+`PHONG_WEIGHT_INDEX_BITS-1:0] write_address,
     input wire [2*`PHONG_COEFFICIENT_BITS:0]                       write_word,
 
-    // a pixel
-    input wire [`PHONG_UNIT_BITS-1:0]     unit_x,         // s0.17, unit normal
-    input wire [`PHONG_UNIT_BITS-1:0]     unit_y,
-    input wire [`PHONG_UNIT_BITS-1:0]     unit_z,
-    input wire [`PHONG_VERSINE_BITS-1:0]  given_versine,  // u0.22, 1 - cos(s); for differences only
+    // a pixel; by the method dot_first unit_x is hz Xn - hx Zn and unit_y is hz Yn
+    input wire [`PHONG_UNIT_BITS-1:0]     unit_x,         // s0.17, unit normal, x
+    input wire [`PHONG_UNIT_BITS-1:0]     unit_y,         // s0.17, y
+    input wire [`PHONG_UNIT_BITS-1:0]     unit_z,         // s0.17, z
+    input wire [`PHONG_VERSINE_BITS-1:0]  given_versine,  // u0.22, 1 - cos(s); quadratic_spans only
     input wire [`PHONG_COSINE_BITS-1:0]   cosine,         // u0.18, cos(i)
-    input wire                            lit,
-    input wire [`PHONG_MATERIAL_BITS-1:0] material,
+    input wire                            lit,            // 0: ambient term only
+    input wire [`PHONG_MATERIAL_BITS-1:0] material,       // index
 
-    output wire [`PHONG_COLOUR_BITS-1:0] red,    // codes
-    output wire [`PHONG_COLOUR_BITS-1:0] green,
-    output wire [`PHONG_COLOUR_BITS-1:0] blue
+    // its colour, LATENCY cycles later
+    output wire [`PHONG_COLOUR_BITS-1:0] red,    // code, 0 to 255
+    output wire [`PHONG_COLOUR_BITS-1:0] green,  // code, 0 to 255
+    output wire [`PHONG_COLOUR_BITS-1:0] blue    // code, 0 to 255
 );
 
   localparam NORMAL_METHOD        = `PHONG_NORMAL_METHOD;
@@ -47,20 +55,20 @@ module shading_unit (
   localparam WEIGHT_BITS          = `PHONG_WEIGHT_BITS;
   localparam WEIGHT_FRACTION      = `PHONG_WEIGHT_FRACTION;
   localparam COLOUR_BITS          = `PHONG_COLOUR_BITS;
-  localparam CHANNELS             = `PHONG_CHANNELS;
-  localparam SPECULAR             = `PHONG_SPECULAR;
-  localparam POWER_FUNCTION       = `PHONG_POWER_FUNCTION;
-  localparam WEIGHT_FUNCTION      = `PHONG_WEIGHT_FUNCTION;
-  localparam CONSTANT_EXPONENT    = `PHONG_CONSTANT_EXPONENT;
-  localparam CONSTANT_WEIGHT      = `PHONG_CONSTANT_WEIGHT;
+  localparam CHANNELS             = `PHONG_CHANNELS;           // 3: red, green, blue; 1: grey
+  localparam SPECULAR             = `PHONG_SPECULAR;           // 0: no highlight
+  localparam POWER_FUNCTION       = `PHONG_POWER_FUNCTION;     // 0: n is always 1
+  localparam WEIGHT_FUNCTION      = `PHONG_WEIGHT_FUNCTION;    // 0: W does not depend on i
+  localparam CONSTANT_EXPONENT    = `PHONG_CONSTANT_EXPONENT;  // 1: n is a constant of the build
+  localparam CONSTANT_WEIGHT      = `PHONG_CONSTANT_WEIGHT;    // 1: W is a constant of the build
   localparam LATENCY              = `PHONG_SHADING_UNIT_LATENCY;
 
-  // Clocks from the input to where a thing is needed.
+  // Cycles from the input to the use of cos(s)^n, n and W(i).
   localparam POWER_AT = `PHONG_SPECULAR_LATENCY;
   localparam EXPONENT_AT = `PHONG_HIGHLIGHT_LATENCY + `PHONG_EXPONENT_LATENCY;
   localparam WEIGHT_AT = POWER_AT - `PHONG_SPECULAR_WEIGHT_LATENCY;
 
-  // Clocks from the input to where the material is looked up, in this order.
+  // Cycles from the input to the look-ups by material, EXPONENT_FROM first and COLOUR_FROM last.
   localparam COLOUR_FROM = POWER_AT - `PHONG_SMALL_RAM_LATENCY;
   localparam WEIGHT_FROM = !SPECULAR ? 0 : WEIGHT_FUNCTION ? WEIGHT_AT : COLOUR_FROM;
   localparam EXPONENT_FROM =
@@ -69,7 +77,7 @@ module shading_unit (
   wire [MATERIAL_BITS-1:0] write_material = write_address[INDEX_BITS+:MATERIAL_BITS];
   wire [MATERIAL_BITS-1:0] material_exponent;
   wire [MATERIAL_BITS-1:0] material_weight;
-  wire [MATERIAL_BITS-1:0] material_early;
+  wire [MATERIAL_BITS-1:0] material_early;  // 1 cycle before the rest of the pixel
 
   delay #(
       .BITS  (MATERIAL_BITS),
@@ -98,7 +106,7 @@ module shading_unit (
       .out(material_early)
   );
 
-  // cos(i) comes to the weight first, then to the products.
+  // cos(i) is needed by the weight first, then by the products.
   localparam COSINE_WEIGHT_AT = SPECULAR && WEIGHT_FUNCTION ? WEIGHT_AT : 0;
 
   wire [COSINE_BITS-1:0] cosine_weight;
@@ -133,13 +141,13 @@ module shading_unit (
   );
 
   // ---- W(i) cos(s)^n ----
-  wire [WEIGHT_BITS+POWER_BITS-1:0] specular;
+  wire [WEIGHT_BITS+POWER_BITS-1:0] specular;  // u1.35
 
   generate
     if (SPECULAR) begin : gen_specular
-      wire [VERSINE_BITS-1:0] versine;
-      wire [POWER_BITS-1:0] power;
-      wire [WEIGHT_BITS-1:0] weight;
+      wire [VERSINE_BITS-1:0] versine;  // u0.22, 1 - cos(s)
+      wire [POWER_BITS-1:0] power;      // u0.18, cos(s)^n
+      wire [WEIGHT_BITS-1:0] weight;    // u1.17, W(i)
 
       if (NORMAL_METHOD == `PHONG_NORMAL_METHOD_DOT_FIRST) begin : gen_versine
         versine_of_cross u_versine (
@@ -213,7 +221,7 @@ module shading_unit (
         );
       end else if (CONSTANT_WEIGHT) begin : gen_constant_weight
         assign weight = {WEIGHT_BITS{1'b0}};
-      end else begin : gen_material_weight  // interval 0 stands for all
+      end else begin : gen_material_weight  // the left point of interval 0
         wire [COEFFICIENT_BITS-1:0] left;
 
         small_ram #(

@@ -1,6 +1,8 @@
-// span_walker: spans become pixels, left to right; it starts and steps the interpolators.
-// A pixel a clock as long as there is credit, and no bubble between spans, also of one pixel.
-// Latency 1: a span accepted now has its first pixel at the outputs in the next clock.
+// SPDX-License-Identifier: MIT
+// span_walker: turns spans into pixels, left to right, and steers the interpolators.
+// Latency: 1 cycle from an accepted span to its first pixel at the outputs.
+// Throughput: one pixel per cycle while there is credit; no gap between spans, even of one pixel.
+// Reset: synchronous; drops the active span. The place and the material of a pixel are not reset.
 `default_nettype none
 `include "phong_config.vh"
 
@@ -9,52 +11,58 @@ module span_walker #(
     parameter MATERIAL_BITS   = `PHONG_MATERIAL_BITS
 ) (
     input wire clk,
-    input wire reset,  // synchronous; drops the span at work
+    input wire reset,  // synchronous
 
-    // span, with the normal's start and step at the interpolators
+    // offered span; accepted in a cycle in which span_valid and span_ready are 1
     input  wire                       span_valid,
-    output wire                       span_ready,
-    input  wire [COORDINATE_BITS-1:0] span_x,         // pixels, first pixel
-    input  wire [COORDINATE_BITS-1:0] span_y,
-    input  wire [  COORDINATE_BITS:0] span_length,    // pixels, 1 or more
-    input  wire [  MATERIAL_BITS-1:0] span_material,
-    input  wire                       span_last,      // last span of the frame
+    output wire                       span_ready,     // does not depend on span_valid
+    input  wire [COORDINATE_BITS-1:0] span_x,         // pixels, place of the first pixel
+    input  wire [COORDINATE_BITS-1:0] span_y,         // pixels
+    input  wire [COORDINATE_BITS:0]   span_length,    // pixels, 1 or more
+    input  wire [MATERIAL_BITS-1:0]   span_material,  // index
+    input  wire                       span_last,      // the span is the last of the frame
 
-    // interpolators; while there is no span they may load anything
-    output wire advance,   // take the next value
-    output wire load,      // as the next value take start, and step with it; else add step
-    input  wire overflow,  // a component has left its word since load
+    // control of the interpolators, to which the `values` of the offered span (start, step) go;
+    // `load` acts only together with `advance`. While no span is active, `load` is 1, too, and the
+    // interpolators may load anything.
+    output wire advance,   // 1: move to the next pixel; 0: hold the current one
+    output wire load,      // 1: the current pixel ends its span; the next one starts from `values`
+    input  wire overflow,  // an interpolated component has left its word since the first pixel
 
-    // pixel, at the time of the interpolators' values
-    input  wire                       credit,  // a pixel may leave
-    output wire                       pixel_valid,
-    output reg  [COORDINATE_BITS-1:0] pixel_x,
-    output reg  [COORDINATE_BITS-1:0] pixel_y,
-    output reg  [  MATERIAL_BITS-1:0] pixel_material,
-    output wire                       pixel_last,  // last pixel of the frame
+    // current pixel, in the cycle of its interpolated values
+    input  wire                       credit,          // 1: a pixel may leave
+    output wire                       pixel_valid,     // 1: the pixel leaves
+    output reg  [COORDINATE_BITS-1:0] pixel_x,         // pixels
+    output reg  [COORDINATE_BITS-1:0] pixel_y,         // pixels
+    output reg  [MATERIAL_BITS-1:0]   pixel_material,  // index
+    output wire                       pixel_last,      // the pixel is the last of the frame
 
-    output wire illegal_span  // for one clock: a span was empty, left its word or the counter
+    // one-cycle pulse, one cycle after the last pixel of an illegal span: the span is empty, its x
+    // leaves the range of coordinates, or a component has left its word
+    output wire illegal_span
 );
 
-  reg busy;
-  reg walking;  // ~at_end once more, for use in here: at_end drives registers far and wide
-  reg at_end;  // the pixel at the outputs is the last of its span, or there is none
-  reg next_ends;  // the pixel after it is
-  reg [COORDINATE_BITS:0] remaining;  // pixels of the span after this one
-  reg [1:0] beyond;  // of pixel_x: how often it left the counter; all ones for an empty span
-  reg last;
-  reg ended;  // a span did, one clock ago
-  reg illegal;  // it was
+  reg busy;                           // a span is active
+  reg walking;                        // copy of ~at_end for local use; at_end has a large fan-out
+  reg at_end;                         // the current pixel ends its span, or no span is active
+  reg next_ends;                      // the pixel after the current one is the last of the span
+  reg [COORDINATE_BITS:0] remaining;  // pixels of the span after the current one
+  reg [1:0] beyond;                   // how often pixel_x has wrapped; all ones for an empty span
+  reg last;                           // the span is the last of the frame
+  reg ended;                          // the last pixel of a span left one cycle ago
+  reg illegal;                        // that span was illegal
 
   assign pixel_valid = busy & credit;
   assign pixel_last = last & ~walking;
   assign span_ready = credit & ~walking;
 
-  // Both drive whole words, so they are registers: span_valid decides only whether what was loaded
-  // is a span, and without credit nothing moves, not even into an idle walker.
+  // `advance` and `load` drive whole words, so both come from registers. span_valid decides only
+  // whether the loaded values belong to a span. Without credit nothing moves, and no span is
+  // accepted even while none is active.
   assign advance = credit;
   assign load = at_end;
 
+  // The next pixel is the last of its span, or there will be none.
   wire ends = walking ? next_ends : ~span_valid | (span_length[COORDINATE_BITS:1] == 0);
 
   always @(posedge clk) begin

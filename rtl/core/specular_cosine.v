@@ -1,5 +1,8 @@
+// SPDX-License-Identifier: MIT
 // specular_cosine: cos(s) = 1 - versine, rounded: cos(s)^n for n = 1.
-// One result a clock; latency below.
+// Latency: LATENCY cycles (PHONG_SPECULAR_COSINE_LATENCY in latency.vh; 3 by default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"

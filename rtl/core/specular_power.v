@@ -1,4 +1,10 @@
+// SPDX-License-Identifier: MIT
 // specular_power: cos(s)^n by the method that the configuration names.
+// `exponent` comes PHONG_EXPONENT_LATENCY cycles after its `versine`.
+// Latency: LATENCY cycles from `versine` (PHONG_SPECULAR_POWER_LATENCY in latency.vh; 30 by
+// default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
@@ -6,8 +12,7 @@
 module specular_power (
     input  wire                            clk,
     input  wire [`PHONG_VERSINE_BITS-1:0]  versine,   // u0.22, 1 - cos(s)
-    // u8.9, n, PHONG_EXPONENT_LATENCY after versine
-    input  wire [`PHONG_EXPONENT_BITS-1:0] exponent,
+    input  wire [`PHONG_EXPONENT_BITS-1:0] exponent,  // u8.9, n, later than `versine`
     output wire [`PHONG_POWER_BITS-1:0]    power      // u0.18, cos(s)^n
 );
 

@@ -1,48 +1,52 @@
+// SPDX-License-Identifier: MIT
 // specular_power_tables: cos(s)^n = 2^(-n * -log2(1 - v)), v = 1 - cos(s).
-// Both the logarithm and the exponential are tables of straight lines; n may be fractional.
-// n = 1 bypasses them: cos(s) itself, rounded (specular_cosine).
-// One result a clock; latency below.
+// Logarithm and exponential are piecewise linear tables; n may be fractional. n = 1 bypasses them:
+// the result is cos(s) itself, rounded (specular_cosine).
+// `exponent` comes EXPONENT_LATENCY cycles after its `versine`.
+// Latency: LATENCY cycles from `versine` (PHONG_SPECULAR_POWER_TABLES_LATENCY in latency.vh; 30 by
+// default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
 
 module specular_power_tables (
     input  wire                            clk,
-    input  wire [`PHONG_VERSINE_BITS-1:0]  versine,   // u0.22, 1 - cos(s)
-    // u8.9, n, EXPONENT_LATENCY clocks after versine
-    input  wire [`PHONG_EXPONENT_BITS-1:0] exponent,
+    input  wire [`PHONG_VERSINE_BITS-1:0]  versine,   // u0.22, v = 1 - cos(s)
+    input  wire [`PHONG_EXPONENT_BITS-1:0] exponent,  // u8.9, n, later than `versine`
     output wire [`PHONG_POWER_BITS-1:0]    power      // u0.18, cos(s)^n
 );
 
   localparam VERSINE_BITS      = `PHONG_VERSINE_BITS;
-  localparam LOG_INDEX_BITS    = `PHONG_LOG_INDEX_BITS;
-  localparam LOG_VALUE_BITS    = `PHONG_LOG_VALUE_BITS;  // all of them fraction
-  localparam LOG_SLOPE_BITS    = `PHONG_LOG_SLOPE_BITS;
-  localparam LOG_MANTISSA_BITS = `PHONG_LOG_MANTISSA_BITS;
+  localparam LOG_INDEX_BITS    = `PHONG_LOG_INDEX_BITS;     // 2^LOG_INDEX_BITS segments
+  localparam LOG_VALUE_BITS    = `PHONG_LOG_VALUE_BITS;     // all of them fraction
+  localparam LOG_SLOPE_BITS    = `PHONG_LOG_SLOPE_BITS;     // in units of 2^-LOG_VALUE_BITS
+  localparam LOG_MANTISSA_BITS = `PHONG_LOG_MANTISSA_BITS;  // of -log2(cos(s)), times n
   localparam EXPONENT_BITS     = `PHONG_EXPONENT_BITS;
   localparam EXPONENT_FRACTION = `PHONG_EXPONENT_FRACTION;
-  localparam LOG_BITS          = `PHONG_POWER_LOG_BITS;
+  localparam LOG_BITS          = `PHONG_POWER_LOG_BITS;     // of n * -log2(cos(s))
   localparam LOG_FRACTION      = `PHONG_POWER_LOG_FRACTION;
-  localparam EXP_INDEX_BITS    = `PHONG_EXP_INDEX_BITS;
-  localparam EXP_VALUE_BITS    = `PHONG_EXP_VALUE_BITS;  // all of them fraction
-  localparam EXP_SLOPE_BITS    = `PHONG_EXP_SLOPE_BITS;
-  localparam POWER_BITS        = `PHONG_POWER_BITS;  // all of them fraction
-  localparam OCTAVES           = `PHONG_LOG_OCTAVES;  // 0: cos(s)^n is 0 if cos(s) <= 1/2
-  localparam BYPASS            = `PHONG_POWER_BYPASS;  // 0: n is never 1
+  localparam EXP_INDEX_BITS    = `PHONG_EXP_INDEX_BITS;     // 2^EXP_INDEX_BITS segments
+  localparam EXP_VALUE_BITS    = `PHONG_EXP_VALUE_BITS;     // all of them fraction
+  localparam EXP_SLOPE_BITS    = `PHONG_EXP_SLOPE_BITS;     // in units of 2^-EXP_VALUE_BITS
+  localparam POWER_BITS        = `PHONG_POWER_BITS;         // all of them fraction
+  localparam OCTAVES           = `PHONG_LOG_OCTAVES;        // 0: cos(s)^n is 0 if cos(s) <= 1/2
+  localparam BYPASS            = `PHONG_POWER_BYPASS;       // 0: n is never 1
   localparam CONSTANT          = `PHONG_CONSTANT_EXPONENT;  // 1: n is EXPONENT
   localparam EXPONENT          = `PHONG_CONSTANT_EXPONENT_N;
   localparam LATENCY           = `PHONG_SPECULAR_POWER_TABLES_LATENCY;
 
-  localparam EXPONENT_LATENCY = `PHONG_LOG_LATENCY;
+  localparam EXPONENT_LATENCY = `PHONG_LOG_LATENCY;  // cycles from `versine` to its `exponent`
 
-  // ---- leading_ones: cos(s) = 2^-e (1 - t), 0 <= t < 1/2 ----
-  // Without octaves e is 0 or 1, and where it is 1 the power vanishes, whatever t is.
+  // ---- leading_ones: cos(s) = 2^-e (1 - t), 0 <= t < 1/2; e leading ones of v ----
+  // Without octaves e is 0 or 1. Where e is 1 the power is 0, whatever t is.
   localparam E_BITS = OCTAVES ? $clog2(VERSINE_BITS + 1) : 1;
-  localparam ONES_LATENCY = OCTAVES ? `PHONG_LEADING_ZEROS_LATENCY : 0;
-  localparam T_LATENCY = OCTAVES ? `PHONG_LEFT_SHIFTER_LATENCY : 0;
+  localparam ONES_LATENCY = OCTAVES ? `PHONG_LEADING_ZEROS_LATENCY : 0;  // cycles to e
+  localparam T_LATENCY = OCTAVES ? `PHONG_LEFT_SHIFTER_LATENCY : 0;      // cycles from e to t
 
   wire [E_BITS-1:0] e_p2;
-  wire [VERSINE_BITS-1:0] t_p4;
+  wire [VERSINE_BITS-1:0] t_p4;  // u0.22
 
   generate
     if (OCTAVES) begin : gen_octaves
@@ -81,8 +85,8 @@ module specular_power_tables (
     end
   endgenerate
 
-  // ---- log_lookup ----
-  localparam LOG_OFFSET_BITS = VERSINE_BITS - 1 - LOG_INDEX_BITS;
+  // ---- log_lookup: the line of -log2(1 - t) in the segment of t ----
+  localparam LOG_OFFSET_BITS = VERSINE_BITS - 1 - LOG_INDEX_BITS;  // place in the segment
 
   wire [LOG_VALUE_BITS-1:0] log_value_p6;
   wire [LOG_SLOPE_BITS-1:0] log_slope_p6;
@@ -110,7 +114,7 @@ module specular_power_tables (
   wire unused_t = &{1'b0, t_p4[VERSINE_BITS-1]};  // t < 1/2
 
   // ---- log_refine: g = -log2(cos s) = e + value + slope * offset ----
-  localparam G_BITS = E_BITS + LOG_VALUE_BITS;
+  localparam G_BITS = E_BITS + LOG_VALUE_BITS;  // LOG_VALUE_BITS of them fraction
 
   wire [LOG_SLOPE_BITS+LOG_OFFSET_BITS-1:0] log_rise_p8;
   wire [LOG_VALUE_BITS-1:0] log_value_p8;
@@ -154,11 +158,11 @@ module specular_power_tables (
 
   wire unused_rise = &{1'b0, log_rise_p8[LOG_OFFSET_BITS-1:0]};
 
-  // ---- log_normalize: the bits of g below its leading zeros, at most MOST of them dropped ----
+  // ---- log_normalize: g without its leading zeros, of which at most MOST are dropped ----
   localparam MOST = G_BITS - LOG_MANTISSA_BITS;
   localparam K_BITS = $clog2(MOST + 1);
 
-  wire [K_BITS-1:0] k_p11;
+  wire [K_BITS-1:0] k_p11;  // leading zeros dropped
   wire [G_BITS-1:0] g_p11;
   wire [G_BITS-1:0] mantissa_p13;
 
@@ -192,17 +196,17 @@ module specular_power_tables (
 
   wire unused_mantissa = &{1'b0, mantissa_p13[MOST-1:0]};
 
-  // ---- times_exponent: x = n * g, saturated where the power vanishes ----
+  // ---- times_exponent: x = n * g, saturated where the power is 0 ----
   localparam N_BITS = LOG_MANTISSA_BITS + EXPONENT_BITS;
-  localparam N_DROP = LOG_VALUE_BITS + EXPONENT_FRACTION - LOG_FRACTION - MOST;
-  localparam WIDE_BITS = N_BITS - N_DROP;
+  localparam N_DROP = LOG_VALUE_BITS + EXPONENT_FRACTION - LOG_FRACTION - MOST;  // bits cut off
+  localparam WIDE_BITS = N_BITS - N_DROP;                                        // the bits kept
 
   wire [N_BITS-1:0] product_p15;
   wire [K_BITS-1:0] k_p15;
   reg [WIDE_BITS-1:0] coarse_p16;
   reg [1:0] fine_p16;
   reg [WIDE_BITS-1:0] wide_p17;
-  reg [LOG_BITS-1:0] x_p18;
+  reg [LOG_BITS-1:0] x_p18;  // u5.16
 
   generate
     if (CONSTANT) begin : gen_constant
@@ -250,9 +254,9 @@ module specular_power_tables (
 
   wire unused_product = &{1'b0, product_p15[N_DROP-1:0]};
 
-  // ---- exp_lookup ----
-  localparam EXP_OFFSET_BITS = LOG_FRACTION - EXP_INDEX_BITS;
-  localparam WHOLE_BITS = LOG_BITS - LOG_FRACTION;
+  // ---- exp_lookup: the line of 2^-f in the segment of f, the fraction of x ----
+  localparam EXP_OFFSET_BITS = LOG_FRACTION - EXP_INDEX_BITS;  // place in the segment
+  localparam WHOLE_BITS = LOG_BITS - LOG_FRACTION;             // integer part of x
 
   wire [EXP_VALUE_BITS-1:0] exp_value_p20;
   wire [EXP_SLOPE_BITS-1:0] exp_slope_p20;
@@ -277,7 +281,7 @@ module specular_power_tables (
       .out(exp_offset_p20)
   );
 
-  // ---- exp_refine: value - slope * offset ----
+  // ---- exp_refine: 2^-f = value - slope * offset ----
   wire [EXP_SLOPE_BITS+EXP_OFFSET_BITS-1:0] exp_fall_p24;
   wire [EXP_VALUE_BITS-1:0] exp_value_p24;
   wire [WHOLE_BITS-1:0] whole_p25;
@@ -318,7 +322,7 @@ module specular_power_tables (
 
   wire unused_fall = &{1'b0, exp_fall_p24[EXP_OFFSET_BITS-1:0]};
 
-  // ---- exp_shift: by the whole part, then rounded ----
+  // ---- exp_shift: 2^-x = 2^-f shifted by the integer part of x, rounded ----
   reg [EXP_VALUE_BITS-1:0] coarse_p26;
   reg [1:0] fine_p26;
   reg [EXP_VALUE_BITS-1:0] shifted_p27;

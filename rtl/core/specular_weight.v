@@ -1,35 +1,41 @@
-// specular_weight: W(i) of the paper's eq. (3), straight lines between equally spaced points in Zn.
-// A table word holds an interval: {step to the right point, left point}.
-// One result a clock; latency below.
+// SPDX-License-Identifier: MIT
+// specular_weight: W(i) of Phong 1975, eq. (3), piecewise linear in Zn = cos(i), per material.
+// The intervals of Zn are equal. A table word holds one of them: {step to the right point, left
+// point}.
+// Latency: LATENCY cycles (PHONG_SPECULAR_WEIGHT_LATENCY in latency.vh; 6 by default).
+// Throughput: one result per cycle.
+// Reset: none; the table is undefined until written.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
 
 module specular_weight (
-    input  wire                                                     clk,
-    input  wire                                                     write_enable,
-    // {material, interval}
-    input  wire [`PHONG_MATERIAL_BITS+`PHONG_WEIGHT_INDEX_BITS-1:0] write_address,
-    // {step s1.16, left u1.16}
-    input  wire [2*`PHONG_COEFFICIENT_BITS:0]                       write_word,
-    input  wire [`PHONG_MATERIAL_BITS-1:0]                          material,
-    input  wire [`PHONG_COSINE_BITS-1:0]                            cosine,         // u0.18, Zn
-    output wire [`PHONG_WEIGHT_BITS-1:0]                            weight          // u1.17, W(i)
+    input wire clk,
+
+    // write port; address: {material, interval}, word: {step s1.16, left u1.16}
+    input wire                                                     write_enable,  // 1: write
+    input wire [`PHONG_MATERIAL_BITS+`PHONG_WEIGHT_INDEX_BITS-1:0] write_address,
+    input wire [2*`PHONG_COEFFICIENT_BITS:0]                       write_word,
+
+    // a pixel
+    input  wire [`PHONG_MATERIAL_BITS-1:0] material,  // index
+    input  wire [`PHONG_COSINE_BITS-1:0]   cosine,    // u0.18, Zn
+    output wire [`PHONG_WEIGHT_BITS-1:0]   weight     // u1.17, W(i)
 );
 
   localparam MATERIAL_BITS        = `PHONG_MATERIAL_BITS;
-  localparam INDEX_BITS           = `PHONG_WEIGHT_INDEX_BITS;
+  localparam INDEX_BITS           = `PHONG_WEIGHT_INDEX_BITS;  // 2^INDEX_BITS intervals
   localparam COEFFICIENT_BITS     = `PHONG_COEFFICIENT_BITS;
   localparam COEFFICIENT_FRACTION = `PHONG_COEFFICIENT_FRACTION;
-  localparam COSINE_BITS          = `PHONG_COSINE_BITS;  // all of them fraction
+  localparam COSINE_BITS          = `PHONG_COSINE_BITS;        // all of them fraction
   localparam WEIGHT_BITS          = `PHONG_WEIGHT_BITS;
   localparam WEIGHT_FRACTION      = `PHONG_WEIGHT_FRACTION;
   localparam LATENCY              = `PHONG_SPECULAR_WEIGHT_LATENCY;
 
-  localparam OFFSET_BITS = COSINE_BITS - INDEX_BITS;
-  localparam STEP_BITS = COEFFICIENT_BITS + 1;
+  localparam OFFSET_BITS = COSINE_BITS - INDEX_BITS;                       // place in the interval
+  localparam STEP_BITS = COEFFICIENT_BITS + 1;                             // signed
   localparam LINE_BITS = STEP_BITS + OFFSET_BITS;
-  localparam DROP = OFFSET_BITS + COEFFICIENT_FRACTION - WEIGHT_FRACTION;
+  localparam DROP = OFFSET_BITS + COEFFICIENT_FRACTION - WEIGHT_FRACTION;  // bits rounded off
 
   // ---- lookup ----
   wire [STEP_BITS-1:0] step_p2;
@@ -84,7 +90,7 @@ module specular_weight (
   );
 
   always @(posedge clk) begin
-    line_p5 <= {1'b0, left_p4, {OFFSET_BITS{1'b0}}} + rise_p4;  // a point of a chord: 0 to 1
+    line_p5 <= {1'b0, left_p4, {OFFSET_BITS{1'b0}}} + rise_p4;  // 0 to 1: between two points
     weight_p6 <= line_p5[DROP+:WEIGHT_BITS] + {{WEIGHT_BITS - 1{1'b0}}, line_p5[DROP-1]};
   end
 

@@ -1,17 +1,18 @@
-// versine_of_cross: 1 - cos(s) = 2 (p^2 + q^2) from the parts p, q of the unit normal across the
-// half
-// vector (see reflection).
-// One result a clock; latency below.
+// SPDX-License-Identifier: MIT
+// versine_of_cross: 1 - cos(s) = 2 (cross_xz^2 + cross_y^2), from the x and y components of the
+// cross product of the unit normal and the half vector (see reflection).
+// Latency: LATENCY cycles (PHONG_VERSINE_OF_CROSS_LATENCY in latency.vh; 6 by default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
 
 module versine_of_cross (
     input  wire                           clk,
-    input  wire [`PHONG_UNIT_BITS-1:0]    cross_xz,  // s0.17
-    input  wire [`PHONG_UNIT_BITS-1:0]    cross_y,
-    // u0.22, 1 - cos(s); all ones where cos(s) <= 0
-    output wire [`PHONG_VERSINE_BITS-1:0] versine
+    input  wire [`PHONG_UNIT_BITS-1:0]    cross_xz,  // s0.17, hz Yn
+    input  wire [`PHONG_UNIT_BITS-1:0]    cross_y,   // s0.17, hz Xn - hx Zn
+    output wire [`PHONG_VERSINE_BITS-1:0] versine    // u0.22, 1 - cos(s); all ones if cos(s) <= 0
 );
 
   localparam UNIT_BITS        = `PHONG_UNIT_BITS;

@@ -1,21 +1,28 @@
-// block_ram: 512 words of 36 bits, one write port and one read port, on one DP16KD with its output
-// register, which Yosys does not use when it infers a memory.
-// Read latency 2 (array, output register), one word a clock. What is read while it is written is
-// undefined.
+// SPDX-License-Identifier: MIT
+// block_ram: memory of 512 words of 36 bits with one write port and one read port, on one DP16KD.
+// The block's output register is used, which Yosys does not do when it infers a memory.
+// A read in the cycle of a write to the same address returns an undefined word.
+// Latency: 2 cycles from `address` to `word` (array register, output register).
+// Throughput: one read and one write per cycle.
+// Reset: none.
 `default_nettype none
 
 module block_ram #(
-    parameter [512*36-1:0] CONTENTS = 0  // word 0 in the lowest bits
+    parameter [512*36-1:0] CONTENTS = 0  // initial words, word 0 in the lowest bits
 ) (
-    input  wire        clk,
-    input  wire        write_enable,
-    input  wire [ 8:0] write_address,
-    input  wire [35:0] write_word,
-    input  wire [ 8:0] address,
-    output wire [35:0] word
+    input wire clk,
+
+    // write port
+    input wire        write_enable,
+    input wire [8:0]  write_address,
+    input wire [35:0] write_word,  // any format
+
+    // read port
+    input  wire [8:0]  address,
+    output wire [35:0] word  // contents at `address`, 2 cycles later
 );
 
-  // Initial values come in rows of 16 half words, each in a field of 20 bits.
+  // Initial values of the block: row r holds 16 half words of 18 bits, each in a field of 20 bits.
   function [319:0] row(input integer r);
     integer k;
     begin
@@ -24,8 +31,9 @@ module block_ram #(
     end
   endfunction
 
-  // As 36 bits wide, port A writes and port B reads, each with the lower half of the word at A's
-  // data pins and the upper half at B's. The lowest four address bits of A enable bytes.
+  // In the mode of 36 bits, port A writes and port B reads. For both, the lower half of the word is
+  // at the data pins of A and the upper half at those of B. The four lowest address bits of A are
+  // byte enables.
   DP16KD #(
       .INITVAL_00(row(0)), .INITVAL_01(row(1)), .INITVAL_02(row(2)), .INITVAL_03(row(3)),
       .INITVAL_04(row(4)), .INITVAL_05(row(5)), .INITVAL_06(row(6)), .INITVAL_07(row(7)),

@@ -1,6 +1,9 @@
+// SPDX-License-Identifier: MIT
 // harness: phong_pipeline between two shift registers, so that three pins are enough to place and
-// route it. Every port of the pipeline has a register of its own next to it: no pin is on a timed
-// path that matters, nothing is constant and nothing is unused. Not part of the design.
+// route it. Not part of the design.
+// Every port of the pipeline has a register next to it: no pin is on a path whose timing matters,
+// no input is constant and no output is unused.
+// Reset: none; the reset of the pipeline is a bit of the input register.
 `default_nettype none
 `include "phong_config.vh"
 
@@ -11,12 +14,12 @@ module harness #(
     parameter PIXEL_BITS         = 2 * `PHONG_COORDINATE_BITS + 3 * `PHONG_COLOUR_BITS
 ) (
     input  wire clk,
-    input  wire in,   // shifted into the inputs
-    output wire out   // shifted out, the outputs folded in
+    input  wire in,  // serial data, shifted into the input register
+    output wire out  // serial data: the outputs are XORed into the output register and shifted out
 );
 
-  localparam INPUTS = 5 + WRITE_ADDRESS_BITS + WRITE_WORD_BITS + SPAN_BITS;
-  localparam OUTPUTS = 6 + PIXEL_BITS;
+  localparam INPUTS = 5 + WRITE_ADDRESS_BITS + WRITE_WORD_BITS + SPAN_BITS;  // 5 single bits
+  localparam OUTPUTS = 6 + PIXEL_BITS;                                       // 6 single bits
 
   reg [INPUTS-1:0] inputs;
   reg [OUTPUTS-1:0] outputs;

@@ -1,20 +1,24 @@
-// multiplier for Lattice ECP5: rtl/multiplier.v on one MULT18X18D with the block's own input and
-// output registers, which Yosys does not use when it infers a multiplier. Wider operands than the
-// block's 18 bits are left to Yosys.
+// SPDX-License-Identifier: MIT
+// multiplier for Lattice ECP5: equal to rtl/primitives/multiplier.v, on one MULT18X18D.
+// The block's own input and output registers are used, which Yosys does not do when it infers a
+// multiplier. Operands of more than the block's 18 bits are left to Yosys.
+// Latency: LATENCY cycles (PHONG_MULTIPLIER_LATENCY in latency.vh; 2 by default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "latency.vh"
 
 module multiplier #(
-    parameter A_BITS   = 18,
+    parameter A_BITS   = 18,  // at most 18 for one DSP block
     parameter B_BITS   = 18,
     parameter A_SIGNED = 1,   // 1: two's complement, 0: unsigned
     parameter B_SIGNED = 1,
     parameter LATENCY  = `PHONG_MULTIPLIER_LATENCY
 ) (
     input  wire                     clk,
-    input  wire [       A_BITS-1:0] a,
-    input  wire [       B_BITS-1:0] b,
-    output wire [A_BITS+B_BITS-1:0] product  // signed if a or b is
+    input  wire [A_BITS-1:0]        a,       // format as A_SIGNED says
+    input  wire [B_BITS-1:0]        b,       // format as B_SIGNED says
+    output wire [A_BITS+B_BITS-1:0] product  // two's complement if `a` or `b` is
 );
 
   generate

@@ -1,19 +1,29 @@
-// ram for Lattice ECP5: rtl/ram.v on one block RAM and its output register. What does not fit one
-// is left to Yosys. A word that is read while it is written is undefined: write between frames.
+// SPDX-License-Identifier: MIT
+// ram for Lattice ECP5: equal to rtl/primitives/ram.v, on one block RAM with its output register.
+// A memory that does not fit one block is left to Yosys.
+// A read in the cycle of a write to the same address returns an undefined word: write between
+// frames only.
+// Latency: LATENCY cycles from `address` to `word` (PHONG_RAM_LATENCY in latency.vh; 2 by default).
+// Throughput: one read and one write per cycle.
+// Reset: none; contents are undefined until written.
 `default_nettype none
 `include "latency.vh"
 
 module ram #(
     parameter ADDRESS_BITS = 9,
-    parameter WORD_BITS = 36,
-    parameter LATENCY = `PHONG_RAM_LATENCY
+    parameter WORD_BITS    = 36,
+    parameter LATENCY      = `PHONG_RAM_LATENCY
 ) (
-    input  wire                    clk,
-    input  wire                    write_enable,
-    input  wire [ADDRESS_BITS-1:0] write_address,
-    input  wire [   WORD_BITS-1:0] write_word,
+    input wire clk,
+
+    // write port
+    input wire                    write_enable,
+    input wire [ADDRESS_BITS-1:0] write_address,
+    input wire [WORD_BITS-1:0]    write_word,  // any format
+
+    // read port
     input  wire [ADDRESS_BITS-1:0] address,
-    output wire [   WORD_BITS-1:0] word
+    output wire [WORD_BITS-1:0]    word  // contents at `address`, LATENCY cycles later
 );
 
   generate

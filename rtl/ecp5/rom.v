@@ -1,19 +1,24 @@
-// rom for Lattice ECP5: rtl/rom.v on one block RAM and its output register. What does not fit one
-// is left to Yosys.
+// SPDX-License-Identifier: MIT
+// rom for Lattice ECP5: equal to rtl/primitives/rom.v, on one block RAM with its output register.
+// A table that does not fit one block is left to Yosys.
+// Latency: LATENCY cycles (PHONG_ROM_LATENCY in latency.vh; 2 by default).
+// Throughput: one word per cycle.
+// Reset: none; contents are part of the configuration.
 `default_nettype none
 `include "latency.vh"
 
 module rom #(
     parameter ADDRESS_BITS = 9,
-    parameter WORD_BITS = 36,
+    parameter WORD_BITS    = 36,
     parameter [(WORD_BITS<<ADDRESS_BITS)-1:0] CONTENTS = 0,  // word 0 in the lowest bits
-    parameter LATENCY = `PHONG_ROM_LATENCY
+    parameter LATENCY      = `PHONG_ROM_LATENCY
 ) (
     input  wire                    clk,
     input  wire [ADDRESS_BITS-1:0] address,
-    output wire [   WORD_BITS-1:0] word
+    output wire [WORD_BITS-1:0]    word  // word `address` of CONTENTS, LATENCY cycles later
 );
 
+  // CONTENTS with every word zero-extended to the 36 bits of the block.
   function [512*36-1:0] padded(input integer unused);
     integer k;
     begin

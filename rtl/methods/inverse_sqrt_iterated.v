@@ -1,9 +1,16 @@
-// inverse_sqrt_iterated: 1/sqrt(x), x in [1, 4), from a first estimate by STEPS steps of Newton's
-// iteration. The estimate is a constant from a table, or the trick of the constant 0x5f3759df:
-// exponent and fraction of x, read as one number, are log2(x) within 0.09; minus half of that, plus
-// the constant, read back the same way, is 1/sqrt(x) within 3.5 %. Here it is done on the operand's
-// own bits with the fraction of a float32, to the bit what float32 gives, then cut to the word.
-// x below 1 is read as 1 + x. One result a clock; latency below.
+// SPDX-License-Identifier: MIT
+// inverse_sqrt_iterated: 1/sqrt(x), x in [1, 4), from a start value by Newton's iteration.
+// The start value is one of two:
+//   table: a constant per segment of [1, 2) and of [2, 4);
+//   fast inverse: the fast inverse square root with the constant 0x5f3759df. Exponent and fraction
+//     of x, read as one number, are log2(x) within 0.09. The constant minus half of that number,
+//     read back the same way, is 1/sqrt(x) within 3.5 %. The operand's own bits are used, extended
+//     to the fraction of a float32; the result is the float32 result to the bit, cut to the word.
+// The leading bit is implied: an operand in [0, 1) stands for 1 + x.
+// Latency: LATENCY cycles (PHONG_INVERSE_SQRT_ITERATED_LATENCY in latency.vh; 3 by default, that is
+// without a Newton step).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
@@ -15,17 +22,17 @@ module inverse_sqrt_iterated (
 );
 
   localparam OPERAND_BITS = `PHONG_ROOT_OPERAND_BITS;
-  localparam INDEX_BITS   = `PHONG_START_INDEX_BITS;
+  localparam INDEX_BITS   = `PHONG_START_INDEX_BITS;   // 2^INDEX_BITS segments per octave
   localparam ROOT_BITS    = `PHONG_ROOT_BITS;
   localparam FAST_INVERSE = `PHONG_ROOT_METHOD == `PHONG_ROOT_METHOD_FAST_INVERSE;
-  localparam STEPS        = `PHONG_ROOT_NEWTON_STEPS;
+  localparam STEPS        = `PHONG_ROOT_NEWTON_STEPS;  // 0 or more
   localparam LATENCY      = `PHONG_INVERSE_SQRT_ITERATED_LATENCY;
 
   // ---- start ----
-  wire high = operand[OPERAND_BITS-1];
+  wire high = operand[OPERAND_BITS-1];  // x >= 2
 
-  wire [ROOT_BITS-1:0] x_p3;
-  wire [ROOT_BITS-1:0] start_p3;
+  wire [ROOT_BITS-1:0] x_p3;      // u2.16, x with its leading bit
+  wire [ROOT_BITS-1:0] start_p3;  // u0.18, start value
 
   delay #(
       .BITS  (ROOT_BITS),
@@ -39,12 +46,13 @@ module inverse_sqrt_iterated (
 
   generate
     if (FAST_INVERSE) begin : gen_fast_inverse
-      localparam FRACTION = 23;  // of a float32
+      localparam FRACTION = 23;  // fraction bits of a float32
+      // 0x5f3759df without the exponent biases of x (halved) and of the result.
       localparam [FRACTION:0] CONSTANT = 24'hf759df;  // 0x5f3759df - 127 * 2^22 - 125 * 2^23
 
-      reg [FRACTION:0] log_p1;  // exponent and fraction of x
-      reg [FRACTION:0] half_p2;  // those of the estimate; exponent 1 for [1/2, 1), 0 below
-      reg [ROOT_BITS-1:0] estimate_p3;
+      reg [FRACTION:0] log_p1;          // exponent (one bit) and fraction of x
+      reg [FRACTION:0] half_p2;         // the same of the estimate; exponent 1: in [1/2, 1)
+      reg [ROOT_BITS-1:0] estimate_p3;  // u0.18
 
       always @(posedge clk) begin
         log_p1 <= {high, high ? operand[OPERAND_BITS-2:0] : {operand[OPERAND_BITS-3:0], 1'b0},
@@ -58,7 +66,7 @@ module inverse_sqrt_iterated (
 
       assign start_p3 = estimate_p3;
     end else begin : gen_table
-      reg [INDEX_BITS:0] address_p1;
+      reg [INDEX_BITS:0] address_p1;  // {octave, segment}
 
       always @(posedge clk) begin
         address_p1 <= {high, high ? operand[OPERAND_BITS-2-:INDEX_BITS]
@@ -78,8 +86,8 @@ module inverse_sqrt_iterated (
   endgenerate
 
   // ---- steps ----
-  wire [ROOT_BITS-1:0] x[0:STEPS];
-  wire [ROOT_BITS-1:0] y[0:STEPS];
+  wire [ROOT_BITS-1:0] x[0:STEPS];  // u2.16, x beside each estimate
+  wire [ROOT_BITS-1:0] y[0:STEPS];  // u0.18, estimate after so many steps
 
   assign x[0] = x_p3;
   assign y[0] = start_p3;

@@ -1,6 +1,10 @@
+// SPDX-License-Identifier: MIT
 // inverse_sqrt_quadratic: 1/sqrt(x), x in [1, 4), by a table of parabolas,
 //   value - t (slope - t curve), t from 0 to 1 over a segment.
-// x below 1 is read as 1 + x. One result a clock; latency below.
+// The leading bit is implied: an operand in [0, 1) stands for 1 + x.
+// Latency: LATENCY cycles (PHONG_INVERSE_SQRT_QUADRATIC_LATENCY in latency.vh; 11 by default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
@@ -12,20 +16,20 @@ module inverse_sqrt_quadratic (
 );
 
   localparam OPERAND_BITS = `PHONG_ROOT_OPERAND_BITS;
-  localparam INDEX_BITS   = `PHONG_QUADRATIC_INDEX_BITS;
-  localparam VALUE_BITS   = `PHONG_QUADRATIC_VALUE_BITS;
-  localparam SLOPE_BITS   = `PHONG_QUADRATIC_SLOPE_BITS;
-  localparam CURVE_BITS   = `PHONG_QUADRATIC_CURVE_BITS;
+  localparam INDEX_BITS   = `PHONG_QUADRATIC_INDEX_BITS;  // 2^INDEX_BITS segments per octave
+  localparam VALUE_BITS   = `PHONG_QUADRATIC_VALUE_BITS;  // all of them fraction
+  localparam SLOPE_BITS   = `PHONG_QUADRATIC_SLOPE_BITS;  // in units of 2^-(VALUE_BITS + 3)
+  localparam CURVE_BITS   = `PHONG_QUADRATIC_CURVE_BITS;  // in units of 2^-(VALUE_BITS + 3)
   localparam ROOT_BITS    = `PHONG_ROOT_BITS;
   localparam LATENCY      = `PHONG_INVERSE_SQRT_QUADRATIC_LATENCY;
 
-  localparam OFFSET_BITS = OPERAND_BITS - 1 - INDEX_BITS;
-  localparam LINE_BITS   = VALUE_BITS + 3;  // slope and curve are three bits finer than value
+  localparam OFFSET_BITS = OPERAND_BITS - 1 - INDEX_BITS;  // t, all of them fraction
+  localparam LINE_BITS   = VALUE_BITS + 3;                 // three bits finer than values
 
   // ---- lookup: segment and offset t below the leading one ----
-  wire high = operand[OPERAND_BITS-1];
+  wire high = operand[OPERAND_BITS-1];  // x >= 2
 
-  reg [INDEX_BITS:0] address_p1;
+  reg [INDEX_BITS:0] address_p1;  // {octave, segment}
   reg [OFFSET_BITS-1:0] offset_p1;
 
   always @(posedge clk) begin

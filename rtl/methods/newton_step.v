@@ -1,34 +1,40 @@
+// SPDX-License-Identifier: MIT
 // newton_step: one step of Newton's iteration for 1/sqrt(x) from an estimate y,
-//   e = 1 - x y^2, y' = y + y e / 2, whose relative error is 3/2 of the square of y's.
-// Three products; only the small e is rounded hard, so that nothing of y is lost.
-// One result a clock; latency below.
+//   e = 1 - x y^2, y' = y + y e / 2.
+// The relative error of y' is 3/2 of the square of that of y. Only the small e is rounded to few
+// bits, so that y loses none.
+// Latency: LATENCY cycles (PHONG_NEWTON_STEP_LATENCY in latency.vh; 12 by default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
 
 module newton_step #(
-    parameter BITS    = `PHONG_ROOT_BITS,
+    parameter BITS    = `PHONG_ROOT_BITS,  // width of x and y
     parameter LATENCY = `PHONG_NEWTON_STEP_LATENCY
 ) (
     input  wire            clk,
-    input  wire [BITS-1:0] x,        // u2.16, in [1, 4)
-    input  wire [BITS-1:0] y,        // u0.18, within 11 % of 1/sqrt(x)
-    output wire [BITS-1:0] x_out,    // beside the result
-    output wire [BITS-1:0] better    // u0.18
+    input  wire [BITS-1:0] x,      // u2.16, in [1, 4)
+    input  wire [BITS-1:0] y,      // u0.18, within 11 % of 1/sqrt(x)
+    output wire [BITS-1:0] x_out,  // u2.16, x of the result
+    output wire [BITS-1:0] better  // u0.18, the better estimate y'
 );
 
   localparam PRODUCT_BITS = 2 * BITS;
-  localparam ERROR_FRACTION = BITS + 1;  // |e| is below 1/4
-  localparam ERROR_DROP = PRODUCT_BITS - 2 - ERROR_FRACTION;
+  localparam ERROR_FRACTION = BITS + 1;                       // of e; |e| < 1/4
+  localparam ERROR_DROP = PRODUCT_BITS - 2 - ERROR_FRACTION;  // fraction bits of x y^2 cut off
+
+  // Cycles from the input to y^2 and to e.
   localparam SQUARE_AT = `PHONG_MULTIPLIER_LATENCY + `PHONG_ROUND_SATURATE_LATENCY;
   localparam ERROR_AT = SQUARE_AT + `PHONG_MULTIPLIER_LATENCY + 1;
 
   // ---- error: 1 - x y^2 ----
   wire [PRODUCT_BITS-1:0] square_p2;
-  wire [BITS-1:0] square_p4;
+  wire [BITS-1:0] square_p4;            // u0.18, y^2
   wire [BITS-1:0] x_p4;
-  wire [PRODUCT_BITS-1:0] near_one_p6;
-  reg [BITS-1:0] error_p7;
+  wire [PRODUCT_BITS-1:0] near_one_p6;  // u2.34, x y^2
+  reg [BITS-1:0] error_p7;              // e: two's complement, ERROR_FRACTION fraction bits
 
   multiplier #(
       .A_BITS  (BITS),
@@ -74,17 +80,18 @@ module newton_step #(
       .product(near_one_p6)
   );
 
-  // 1 is a one above the kept bits, so 1 - p is -p; -p cut is ~p, a unit of e too small at most.
+  // e = 1 - p, p = x y^2. The 1 is above the kept bits, where e is therefore -p. ~p stands for -p;
+  // it is at most one unit of e too small.
   always @(posedge clk) error_p7 <= ~near_one_p6[ERROR_DROP+:BITS];
 
   wire unused = &{1'b0, near_one_p6[PRODUCT_BITS-1:ERROR_DROP+BITS], near_one_p6[ERROR_DROP-1:0]};
 
   // ---- better: y + y e / 2 ----
-  localparam BETTER_FRACTION = BITS + ERROR_FRACTION + 1;
+  localparam BETTER_FRACTION = BITS + ERROR_FRACTION + 1;  // of the exact sum
 
   wire [BITS-1:0] y_p7;
   wire [BITS-1:0] y_p9;
-  wire [PRODUCT_BITS-1:0] change_p9;
+  wire [PRODUCT_BITS-1:0] change_p9;  // y e, exact
   reg [BETTER_FRACTION:0] sum_p10;
 
   delay #(

@@ -1,23 +1,32 @@
-// quadratic_normalizer: cos(i) = Zn / |N| and 1 - cos(s) = 2 |N x h|^2 / |N|^2 from Zn and the two
-// squares, which are interpolated themselves (after Duff 1979): with 1/|N| three products, where
-// the normalizer and the reflection need eleven.
-// The squares are shifted together until |N|^2 is in [1, 4), that of the part across h further, by
-// up to 15, so that a small versine keeps its bits.
-// One pixel a clock; latency below. |N|^2 = 0 gives an unspecified but defined result.
+// SPDX-License-Identifier: MIT
+// quadratic_normalizer: cos(i) and 1 - cos(s) from Zn and two interpolated squares (after Duff
+// 1979),
+//   cos(i) = Zn / |N|, 1 - cos(s) = 2 C / |N|^2, C = (hz y)^2 + (hz x - hx z)^2.
+// C is the squared length of the x and y components of the cross product N x h (see reflection).
+// Besides 1/|N| this takes three products; normalizer and reflection take eleven.
+// Both squares are shifted together until |N|^2 is in [1, 4). C is then shifted by up to 15 bits
+// more, so that a small versine keeps its bits.
+// |N|^2 = 0 gives an unspecified but defined result.
+// Latency: LATENCY cycles (PHONG_QUADRATIC_NORMALIZER_LATENCY in latency.vh; 23 by default).
+// Throughput: one pixel per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
 
 module quadratic_normalizer (
-    input  wire                           clk,
-    input  wire                           two_sided,  // 1: shade |Zn|
-    input  wire [`PHONG_NORMAL_BITS-1:0]  z,          // s1.30, Zn |N|
-    input  wire [`PHONG_SQUARED_BITS-1:0] square,     // s2.42, |N|^2
-    input  wire [`PHONG_SQUARED_BITS-1:0] cross_square,      // s2.42, |N x h|^2
-    // u0.22, 1 - cos(s); all ones where cos(s) <= 0
-    output wire [`PHONG_VERSINE_BITS-1:0] versine,
-    output wire [`PHONG_COSINE_BITS-1:0]  cosine,     // u0.18, |Zn| = cos(i)
-    output wire                           lit         // Zn > 0 (two-sided: Zn not 0), exact
+    input wire clk,
+    input wire two_sided,  // register, held for a frame; 1: shade |Zn|
+
+    // interpolated values of a pixel
+    input wire [`PHONG_NORMAL_BITS-1:0]  z,             // s1.30, z of the normal, not normalized
+    input wire [`PHONG_SQUARED_BITS-1:0] square,        // s2.42, |N|^2
+    input wire [`PHONG_SQUARED_BITS-1:0] cross_square,  // s2.42, C
+
+    // the same pixel, LATENCY cycles later
+    output wire [`PHONG_VERSINE_BITS-1:0] versine,  // u0.22, 1 - cos(s); all ones if cos(s) <= 0
+    output wire [`PHONG_COSINE_BITS-1:0]  cosine,   // u0.18, |Zn| = |cos(i)|
+    output wire                           lit       // Zn > 0 (two-sided: Zn not 0), exact
 );
 
   localparam NORMAL_BITS       = `PHONG_NORMAL_BITS;
@@ -26,12 +35,12 @@ module quadratic_normalizer (
   localparam MANTISSA_BITS     = `PHONG_QUADRATIC_MANTISSA_BITS;
   localparam MANTISSA_FRACTION = `PHONG_QUADRATIC_MANTISSA_FRACTION;
   localparam OPERAND_BITS      = `PHONG_ROOT_OPERAND_BITS;
-  localparam ROOT_BITS         = `PHONG_ROOT_BITS;  // all of them fraction
-  localparam COSINE_BITS       = `PHONG_COSINE_BITS;  // all of them fraction
+  localparam ROOT_BITS         = `PHONG_ROOT_BITS;     // all of them fraction
+  localparam COSINE_BITS       = `PHONG_COSINE_BITS;   // all of them fraction
   localparam VERSINE_BITS      = `PHONG_VERSINE_BITS;  // all of them fraction
   localparam LATENCY           = `PHONG_QUADRATIC_NORMALIZER_LATENCY;
 
-  // ---- lit: decided on the interpolated Zn itself ----
+  // ---- lit: the sign of the interpolated Zn, before any rounding ----
   reg lit_p1;
 
   always @(posedge clk) lit_p1 <= (z != 0) & (two_sided | ~z[NORMAL_BITS-1]);
@@ -45,13 +54,13 @@ module quadratic_normalizer (
       .out(lit)
   );
 
-  // ---- clamp: what rounding took below 0 is 0 ----
-  localparam WORD_BITS = SQUARED_BITS - 1;
+  // ---- clamp: a square that rounding made negative is 0 ----
+  localparam WORD_BITS = SQUARED_BITS - 1;  // u2.42
   localparam COUNT_BITS = $clog2(WORD_BITS + 1);
 
   reg [WORD_BITS-1:0] square_p1;
   reg [WORD_BITS-1:0] cross_p1;
-  reg [NORMAL_BITS-1:0] z_p1;
+  reg [NORMAL_BITS-1:0] z_p1;  // u2.30, |Zn|
 
   always @(posedge clk) begin
     square_p1 <= square[WORD_BITS-1:0] & {WORD_BITS{~square[WORD_BITS]}};
@@ -59,16 +68,16 @@ module quadratic_normalizer (
     z_p1 <= (z ^ {NORMAL_BITS{z[NORMAL_BITS-1]}}) + {{NORMAL_BITS - 1{1'b0}}, z[NORMAL_BITS-1]};
   end
 
-  // ---- shifts: an even one for |N|^2; how much more for the other ----
-  localparam SHIFTS_AT = 1 + `PHONG_LEADING_ZEROS_LATENCY;
+  // ---- shifts: an even shift of |N|^2, and how many bits more C is shifted ----
+  localparam SHIFTS_AT = 1 + `PHONG_LEADING_ZEROS_LATENCY;  // cycles from the input to the counts
 
   wire [COUNT_BITS-1:0] square_zeros_p3;
   wire [COUNT_BITS-1:0] cross_zeros_p3;
   wire [COUNT_BITS-1:0] even_p3 = {square_zeros_p3[COUNT_BITS-1:1], 1'b0};
   reg [COUNT_BITS-1:0] even_p4;
-  reg [COUNT_BITS:0] more_p4;  // two's complement
-  reg [3:0] more_p5;
-  reg [COUNT_BITS-1:0] cross_shift_p5;
+  reg [COUNT_BITS:0] more_p4;           // two's complement
+  reg [3:0] more_p5;                    // more_p4 clamped to 0 .. 15
+  reg [COUNT_BITS-1:0] cross_shift_p5;  // whole shift of C
 
   wire [3:0] more_clamped =
       more_p4[COUNT_BITS] ? 4'd0 : |more_p4[COUNT_BITS-1:4] ? 4'd15 : more_p4[3:0];
@@ -100,8 +109,8 @@ module quadratic_normalizer (
 
   wire unused_zeros = &{1'b0, square_zeros_p3[0]};
 
-  // ---- align ----
-  localparam ALIGN_AT = SHIFTS_AT + `PHONG_LEFT_SHIFTER_LATENCY;
+  // ---- align: |N|^2 and C by their shifts, |Zn| by half the even shift ----
+  localparam ALIGN_AT = SHIFTS_AT + `PHONG_LEFT_SHIFTER_LATENCY;  // cycles to the aligned |N|^2
 
   wire [WORD_BITS-1:0] square_p3;
   wire [NORMAL_BITS-1:0] z_p3;
@@ -109,7 +118,7 @@ module quadratic_normalizer (
   wire [WORD_BITS-1:0] square_p5;
   wire [NORMAL_BITS-1:0] z_p5;
   wire [WORD_BITS-1:0] cross_p7;
-  wire [MANTISSA_BITS-1:0] z_p7;
+  wire [MANTISSA_BITS-1:0] z_p7;  // u1.17
 
   delay #(
       .BITS  (WORD_BITS + NORMAL_BITS),
@@ -170,15 +179,15 @@ module quadratic_normalizer (
       .out(z_p7)
   );
 
-  localparam PART_DROP = WORD_BITS - MANTISSA_BITS;
+  localparam PART_DROP = WORD_BITS - MANTISSA_BITS;  // low bits of C cut off
 
   wire unused_words = &{1'b0, square_p5[WORD_BITS-OPERAND_BITS-1:0], cross_p7[PART_DROP-1:0]};
 
   // ---- root ----
-  localparam ROOT_AT = ALIGN_AT + `PHONG_INVERSE_SQRT_LATENCY;
+  localparam ROOT_AT = ALIGN_AT + `PHONG_INVERSE_SQRT_LATENCY;  // cycles to 1/|N|
 
-  wire [OPERAND_BITS-1:0] operand = square_p5[WORD_BITS-1-:OPERAND_BITS];
-  wire [ROOT_BITS-1:0] root;
+  wire [OPERAND_BITS-1:0] operand = square_p5[WORD_BITS-1-:OPERAND_BITS];  // u2.20, |N|^2
+  wire [ROOT_BITS-1:0] root;                                               // u0.18, 1/|N|
 
   inverse_sqrt u_inverse_sqrt (
       .clk(clk),
@@ -232,15 +241,16 @@ module quadratic_normalizer (
       .out(cosine)
   );
 
-  // ---- versine: twice the other square by the square of the root ----
+  // ---- versine: 2 C / |N|^2 ----
+  // Cycles from the input to 1/|N|^2 and to its product with C.
   localparam RECIPROCAL_AT = ROOT_AT + `PHONG_MULTIPLIER_LATENCY + `PHONG_ROUND_SATURATE_LATENCY;
   localparam PRODUCT_AT = RECIPROCAL_AT + `PHONG_MULTIPLIER_LATENCY;
   localparam PRODUCT_BITS = MANTISSA_BITS + ROOT_BITS;
 
   wire [2*ROOT_BITS-1:0] root_square;
-  wire [ROOT_BITS-1:0] reciprocal;
-  wire [MANTISSA_BITS-1:0] part;
-  wire [3:0] more;
+  wire [ROOT_BITS-1:0] reciprocal;  // u0.18, 1/|N|^2
+  wire [MANTISSA_BITS-1:0] part;    // u2.16, aligned C
+  wire [3:0] more;                  // bits that C was shifted more than |N|^2
   wire [PRODUCT_BITS-1:0] product;
   reg [PRODUCT_BITS-1:0] coarse;
   reg [1:0] fine;
@@ -305,7 +315,7 @@ module quadratic_normalizer (
     shifted <= coarse >> fine;
   end
 
-  // The aligned square has two integer bits; doubling it takes one from the fraction.
+  // The aligned C has two integer bits; the factor 2 takes one bit from the fraction.
   round_saturate #(
       .IN_BITS  (PRODUCT_BITS),
       .DROP     (MANTISSA_BITS - 2 + ROOT_BITS - 1 - VERSINE_BITS),

@@ -1,7 +1,13 @@
-// quadratic_unit: Phong's shading with the squares of the normal interpolated in place of its x
-// and y (after Duff 1979): |N|^2 and its part across h are quadratic along a span, Zn is linear.
-// One pixel a clock; PHONG_PIXEL_LATENCY clocks from a pixel of the walker to its colour.
-// Wiring in data order.
+// SPDX-License-Identifier: MIT
+// quadratic_unit: Phong shading with squares of the normal interpolated in place of its x and y
+// components (after Duff 1979).
+// Quadratic along a span are |N|^2 and C = (hz y)^2 + (hz x - hx z)^2, the squared length of the x
+// and y components of the cross product N x h; Zn is linear.
+// The module holds the wiring, in data order.
+// Latency: PHONG_PIXEL_LATENCY cycles from a pixel of span_walker to its colour (see latency.vh; 60
+// in the configuration quadratic_spans_18).
+// Throughput: one pixel per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
@@ -9,28 +15,32 @@
 module quadratic_unit (
     input wire clk,
 
-    // write port for registers and material table (see register_map); hold during a frame
-    input wire                                                   write_enable,
-    input wire [`PHONG_MATERIAL_BITS+`PHONG_WEIGHT_INDEX_BITS:0] write_address,
-    input wire [2*`PHONG_COEFFICIENT_BITS:0]                     write_word,
+    // write port of registers and material table; write between frames only
+    input wire                                                   write_enable,   // 1: write
+    input wire [`PHONG_MATERIAL_BITS+`PHONG_WEIGHT_INDEX_BITS:0] write_address,  // see register_map
+    input wire [2*`PHONG_COEFFICIENT_BITS:0]                     write_word,     // see register_map
 
-    // a span, and its pixels
-    // {across 2, 1, 0, square 2, 1, 0 (s2.42: second, first
+    // offered span: {second, first difference and value of C, the same of |N|^2 (s2.42 each),
+    // step of Zn, start of Zn (s1.30 each)}
     input wire [(2*`PHONG_NORMAL_BITS+6*`PHONG_SQUARED_BITS)-1:0] values,
-                                          // difference, value), step z, start z (s1.30)}
-    // this pixel is the first of the span with `values`
-    input wire                            load,
-    input wire                            advance,         // to the next one
-    input wire                            pixel_valid,
-    input wire [`PHONG_MATERIAL_BITS-1:0] pixel_material,
 
-    output wire [`PHONG_COLOUR_BITS-1:0] red,          // codes
-    output wire [`PHONG_COLOUR_BITS-1:0] green,
-    output wire [`PHONG_COLOUR_BITS-1:0] blue,
-    output wire                          overflow,     // Zn has left its word since load
-    output reg                           zero_normal,  // for one clock: a pixel's |N|^2 is 0
-    // for one clock: this build leaves something out
-    output wire                          unsupported
+    // control from span_walker; `load` acts only together with `advance`
+    input wire load,     // 1: the current pixel ends its span; the next one starts from `values`
+    input wire advance,  // 1: move to the next pixel
+
+    // current pixel
+    input wire                            pixel_valid,     // the pixel leaves the interpolators
+    input wire [`PHONG_MATERIAL_BITS-1:0] pixel_material,  // index
+
+    // colour of a pixel
+    output wire [`PHONG_COLOUR_BITS-1:0] red,    // code, 0 to 255
+    output wire [`PHONG_COLOUR_BITS-1:0] green,  // code, 0 to 255
+    output wire [`PHONG_COLOUR_BITS-1:0] blue,   // code, 0 to 255
+
+    // flags
+    output wire overflow,     // Zn has left its word since the span's first pixel
+    output reg  zero_normal,  // one-cycle pulse: |N|^2 of a pixel is 0
+    output wire unsupported   // one-cycle pulse: a write needs what this build leaves out
 );
 
   localparam NORMAL_BITS      = `PHONG_NORMAL_BITS;
@@ -43,7 +53,7 @@ module quadratic_unit (
   localparam COSINE_BITS      = `PHONG_COSINE_BITS;
   localparam VERSINE_BITS     = `PHONG_VERSINE_BITS;
 
-  // ---- registers: h is in the squares already ----
+  // ---- registers: half_x and half_z are written but not used, for C contains h ----
   wire [HALF_BITS-1:0] half_x, half_z;
   wire two_sided;
   wire write_weight, write_exponent;
@@ -70,6 +80,8 @@ module quadratic_unit (
 
   // ---- three interpolators in parallel ----
   wire [NORMAL_BITS-1:0] start_z, step_z, z;
+
+  // Of |N|^2 and of C: start, first and second difference, value at the current pixel.
   wire [SQUARED_BITS-1:0] square_0, square_1, square_2, square;
   wire [SQUARED_BITS-1:0] cross_0, cross_1, cross_2, cross_square;
 

@@ -1,34 +1,39 @@
-// specular_power_schlick: Schlick's cheap stand-in for cos(s)^n (1994), with x = cos(s), v = 1 - x,
-//   x / (n - n x + x) = x / (1 + (n - 1) v),
-// which is 1 where cos(s)^n is, with the same slope there; elsewhere it falls more slowly.
-// The quotient is a product with a reciprocal from a table of lines. n may be fractional; below 1
-// it is taken as 1. One result a clock; latency below.
+// SPDX-License-Identifier: MIT
+// specular_power_schlick: Schlick's approximation (1994) in place of cos(s)^n,
+//   x / (n - n x + x) = x / (1 + (n - 1) v), x = cos(s), v = 1 - x.
+// At cos(s) = 1 value and slope are those of cos(s)^n. Elsewhere the approximation falls more
+// slowly: it is a different curve, and the picture visibly differs.
+// The quotient is a product with the reciprocal of the denominator, from a piecewise linear table.
+// n may be fractional; n below 1 is taken as 1.
+// Latency: LATENCY cycles (PHONG_SPECULAR_POWER_SCHLICK_LATENCY in latency.vh; 22 by default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
 
 module specular_power_schlick (
     input  wire                            clk,
-    input  wire [`PHONG_VERSINE_BITS-1:0]  versine,   // u0.22, 1 - cos(s)
-    input  wire [`PHONG_EXPONENT_BITS-1:0] exponent,  // u8.9, n, with versine
-    output wire [`PHONG_POWER_BITS-1:0]    power      // u0.18
+    input  wire [`PHONG_VERSINE_BITS-1:0]  versine,   // u0.22, v = 1 - cos(s)
+    input  wire [`PHONG_EXPONENT_BITS-1:0] exponent,  // u8.9, n, in the cycle of `versine`
+    output wire [`PHONG_POWER_BITS-1:0]    power      // u0.18, stands for cos(s)^n
 );
 
   localparam VERSINE_BITS      = `PHONG_VERSINE_BITS;
   localparam EXPONENT_BITS     = `PHONG_EXPONENT_BITS;
   localparam EXPONENT_FRACTION = `PHONG_EXPONENT_FRACTION;
-  localparam POWER_BITS        = `PHONG_POWER_BITS;  // all of them fraction
-  localparam INDEX_BITS        = `PHONG_RECIPROCAL_INDEX_BITS;
-  localparam VALUE_BITS        = `PHONG_RECIPROCAL_VALUE_BITS;
-  localparam SLOPE_BITS        = `PHONG_RECIPROCAL_SLOPE_BITS;
+  localparam POWER_BITS        = `PHONG_POWER_BITS;             // all of them fraction
+  localparam INDEX_BITS        = `PHONG_RECIPROCAL_INDEX_BITS;  // 2^INDEX_BITS segments of 1/m
+  localparam VALUE_BITS        = `PHONG_RECIPROCAL_VALUE_BITS;  // all of them fraction
+  localparam SLOPE_BITS        = `PHONG_RECIPROCAL_SLOPE_BITS;  // in units of 2^-VALUE_BITS
   localparam LATENCY           = `PHONG_SPECULAR_POWER_SCHLICK_LATENCY;
 
-  localparam WHOLE_BITS = EXPONENT_BITS - EXPONENT_FRACTION;
+  localparam WHOLE_BITS = EXPONENT_BITS - EXPONENT_FRACTION;  // integer bits of n
   localparam PRODUCT_BITS = EXPONENT_BITS + POWER_BITS;
-  localparam DENOMINATOR_BITS = WHOLE_BITS + POWER_BITS;
+  localparam DENOMINATOR_BITS = WHOLE_BITS + POWER_BITS;      // POWER_BITS of them fraction
 
   // ---- denominator: 1 + (n - 1) v ----
-  reg [EXPONENT_BITS-1:0] n_less_p1;
+  reg [EXPONENT_BITS-1:0] n_less_p1;  // u8.9, n - 1, or 0 if n < 1
   wire [EXPONENT_BITS-1:0] n_less_p2;
   wire [POWER_BITS-1:0] versine_p2;
   wire [PRODUCT_BITS-1:0] product_p4;
@@ -83,9 +88,9 @@ module specular_power_schlick (
   // ---- normalize: denominator = 2^e m, 1 <= m < 2 ----
   localparam K_BITS = $clog2(WHOLE_BITS + 1);
 
-  wire [K_BITS-1:0] k_p7;  // WHOLE_BITS - 1 - e
+  wire [K_BITS-1:0] k_p7;            // leading zeros, WHOLE_BITS - 1 - e
   wire [DENOMINATOR_BITS-1:0] denominator_p7;
-  wire [DENOMINATOR_BITS-1:0] m_p9;
+  wire [DENOMINATOR_BITS-1:0] m_p9;  // m, its leading one in the top bit
 
   leading_zeros #(
       .BITS(WHOLE_BITS),
@@ -117,7 +122,7 @@ module specular_power_schlick (
 
   wire unused_m = &{1'b0, m_p9[DENOMINATOR_BITS-1]};
 
-  // ---- reciprocal: value - slope * offset ----
+  // ---- reciprocal: 1/m = value - slope * offset ----
   localparam OFFSET_BITS = DENOMINATOR_BITS - 1 - INDEX_BITS;
 
   wire [VALUE_BITS-1:0] value_p11;
@@ -126,7 +131,7 @@ module specular_power_schlick (
   wire [SLOPE_BITS+OFFSET_BITS-1:0] fall_p13;
   wire [VALUE_BITS-1:0] value_p13;
   reg [VALUE_BITS-1:0] line_p14;
-  wire [POWER_BITS-1:0] reciprocal_p16;
+  wire [POWER_BITS-1:0] reciprocal_p16;  // u0.18, 1/m
 
   rom #(
       .ADDRESS_BITS(INDEX_BITS),
@@ -187,6 +192,7 @@ module specular_power_schlick (
   );
 
   // ---- quotient: x / m, shifted by e, rounded ----
+  // Cycles from the input to x / m, to 1/m and to the leading zeros.
   localparam QUOTIENT_AT = LATENCY - `PHONG_ROUND_SATURATE_LATENCY - 2;
   localparam RECIPROCAL_AT = QUOTIENT_AT - `PHONG_MULTIPLIER_LATENCY;
   localparam K_AT = `PHONG_ROUND_SATURATE_LATENCY + `PHONG_MULTIPLIER_LATENCY + 1
@@ -236,7 +242,7 @@ module specular_power_schlick (
       .product(quotient_p18)
   );
 
-  // e is the complement of the three bits of k: k = 7 - e.
+  // k = 7 - e in three bits, so e is the complement of k.
   wire [2:0] e_p18 = ~k_p18[2:0];
   wire unused_k = &{1'b0, k_p18[K_BITS-1:3]};
 

@@ -1,8 +1,12 @@
-// specular_power_squaring: cos(s)^n for whole n by repeated squaring: cos(s)^1, ^2, ^4 ... ^128,
-// and the
-// product of those that n's bits name. n is rounded to a whole number, half up: 1.5 gives the
-// square. Beyond 128 only bit 7 counts; n = 0 gives the largest code.
-// One result a clock; latency below.
+// SPDX-License-Identifier: MIT
+// specular_power_squaring: cos(s)^n for whole n by repeated squaring: cos(s)^1, ^2, ^4 .. ^128 and
+// the product of those whose bit of n is 1.
+// n is rounded to a whole number, half up: 1.5 gives the square. For n > 128 only bit 7 counts;
+// n = 0 gives the largest code.
+// `exponent` comes PHONG_EXPONENT_LATENCY cycles after its `versine`, 1 cycle before cos(s).
+// Latency: LATENCY cycles (PHONG_SPECULAR_POWER_SQUARING_LATENCY in latency.vh; 39 by default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
@@ -10,7 +14,7 @@
 module specular_power_squaring (
     input  wire                            clk,
     input  wire [`PHONG_VERSINE_BITS-1:0]  versine,   // u0.22, 1 - cos(s)
-    input  wire [`PHONG_EXPONENT_BITS-1:0] exponent,  // u8.9, n, a clock before cos(s) is ready
+    input  wire [`PHONG_EXPONENT_BITS-1:0] exponent,  // u8.9, n, later than `versine`
     output wire [`PHONG_POWER_BITS-1:0]    power      // u0.18, cos(s)^n
 );
 
@@ -19,16 +23,17 @@ module specular_power_squaring (
   localparam POWER_BITS        = `PHONG_POWER_BITS;  // all of them fraction
   localparam LATENCY           = `PHONG_SPECULAR_POWER_SQUARING_LATENCY;
 
-  localparam N_BITS = EXPONENT_BITS - EXPONENT_FRACTION;
-  localparam STAGES = N_BITS - 1;
+  localparam N_BITS = EXPONENT_BITS - EXPONENT_FRACTION;  // integer bits of n
+  localparam STAGES = N_BITS - 1;                         // squarings
   localparam STAGE_LATENCY = `PHONG_SQUARING_STAGE_LATENCY;
 
-  // ---- start: cos(s), and n rounded ----
-  wire [POWER_BITS-1:0] base[0:STAGES];  // cos(s)^(2^j)
-  wire [POWER_BITS-1:0] result[0:STAGES];  // product of the powers named by the bits below j
-  wire [STAGES:0] some;  // there is such a bit
-  wire [N_BITS-1:0] n[0:STAGES];  // bit 0 is that of stage j
-  reg [N_BITS-1:0] n_p3;
+  // ---- whole: n rounded, beside cos(s) ----
+  // At the input of stage j:
+  wire [POWER_BITS-1:0] base[0:STAGES];    // u0.18, cos(s)^(2^j)
+  wire [POWER_BITS-1:0] result[0:STAGES];  // u0.18, product of the powers of bits 0 to j - 1 of n
+  wire [STAGES:0] some;                    // one of the bits 0 to j - 1 of n is 1
+  wire [N_BITS-1:0] n[0:STAGES];           // n >> j: bit 0 is that of stage j
+  reg [N_BITS-1:0] n_p3;                   // n rounded
 
   specular_cosine u_cosine (
       .clk(clk),
@@ -47,7 +52,7 @@ module specular_power_squaring (
   assign some[0] = 1'b0;
   assign n[0] = n_p3;
 
-  // ---- stages: square the base; multiply the result by it where n has this bit ----
+  // ---- square, times: square the base; multiply the result by the base where bit j of n is 1 ----
   genvar j;
   generate
     for (j = 0; j < STAGES; j = j + 1) begin : gen_stage
@@ -138,7 +143,7 @@ module specular_power_squaring (
     end
   endgenerate
 
-  // ---- last: bit 7 is the only one of n = 128 ----
+  // ---- last: bit 7 of n. It is the only one of n = 128 that is 1, so no product is needed ----
   reg [POWER_BITS-1:0] power_out;
 
   always @(posedge clk) power_out <= n[STAGES][0] ? base[STAGES] : result[STAGES];

@@ -1,13 +1,17 @@
-// delay: a word, CYCLES clocks later. No reset.
+// SPDX-License-Identifier: MIT
+// delay: shift register; `out` repeats `in` after CYCLES cycles.
+// Latency: CYCLES cycles; 0 makes it a wire.
+// Throughput: one word per cycle.
+// Reset: none; the first CYCLES words after power-up are undefined.
 `default_nettype none
 
 module delay #(
-    parameter BITS   = 1,
+    parameter BITS   = 1,  // width of a word
     parameter CYCLES = 1   // 0 or more
 ) (
     input  wire            clk,
-    input  wire [BITS-1:0] in,
-    output wire [BITS-1:0] out
+    input  wire [BITS-1:0] in,  // word of any format
+    output wire [BITS-1:0] out  // the same word, CYCLES cycles later
 );
 
   generate

@@ -1,24 +1,28 @@
-// leading_zeros: number of zeros above the highest one; BITS if there is none.
-// Latency below (position within groups of four; first group that is not zero), one result a clock.
+// SPDX-License-Identifier: MIT
+// leading_zeros: counts the zeros above the highest 1 of a word.
+// Two steps: the highest 1 within each group of four bits, then the highest group with a 1.
+// Latency: LATENCY cycles (PHONG_LEADING_ZEROS_LATENCY in latency.vh; 2 by default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "latency.vh"
 
 module leading_zeros #(
-    parameter BITS       = 31,
+    parameter BITS       = 31,  // width of the word
     parameter COUNT_BITS = 5,   // enough for BITS itself
     parameter LATENCY    = `PHONG_LEADING_ZEROS_LATENCY
 ) (
     input  wire                  clk,
-    input  wire [      BITS-1:0] word,
-    output reg  [COUNT_BITS-1:0] count
+    input  wire [BITS-1:0]       word,  // unsigned
+    output reg  [COUNT_BITS-1:0] count  // zeros above the highest 1; BITS if `word` is 0
 );
 
-  localparam GROUPS = BITS / 4 + 1;  // one bit more at least: the one that ends an empty word
+  localparam GROUPS = BITS / 4 + 1;  // at least BITS + 1 bits: a 1 below the word ends the count
 
   wire [4*GROUPS-1:0] padded = {word, 1'b1, {4 * GROUPS - BITS - 1{1'b0}}};
 
-  reg [GROUPS-1:0] any_p1;
-  reg [1:0] place_p1[0:GROUPS-1];
+  reg [GROUPS-1:0] any_p1;         // the group has a 1
+  reg [1:0] place_p1[0:GROUPS-1];  // zeros above the highest 1 of the group
   reg [COUNT_BITS-1:0] count_next;
 
   integer g;
@@ -29,7 +33,8 @@ module leading_zeros #(
     end
   end
 
-  // The highest group that is not zero is the last to speak; h groups are above it.
+  // The loop ends with the highest group, so the highest group with a 1 decides the count.
+  // h groups are above the group GROUPS-1-h.
   integer h;
   always @* begin
     count_next = {COUNT_BITS{1'b0}};

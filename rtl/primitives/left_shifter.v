@@ -1,17 +1,21 @@
-// left_shifter: word << count, zeros shifted in.
-// Latency below (multiples of four; the remainder), one result a clock.
+// SPDX-License-Identifier: MIT
+// left_shifter: word << count; zeros are shifted in.
+// Two steps: by a multiple of four, then by the remainder.
+// Latency: LATENCY cycles (PHONG_LEFT_SHIFTER_LATENCY in latency.vh; 2 by default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "latency.vh"
 
 module left_shifter #(
-    parameter BITS       = 32,
+    parameter BITS       = 32,  // width of the word
     parameter COUNT_BITS = 5,   // 3 or more
     parameter LATENCY    = `PHONG_LEFT_SHIFTER_LATENCY
 ) (
     input  wire                  clk,
-    input  wire [      BITS-1:0] word,
-    input  wire [COUNT_BITS-1:0] count,
-    output reg  [      BITS-1:0] shifted
+    input  wire [BITS-1:0]       word,    // any format
+    input  wire [COUNT_BITS-1:0] count,   // bits to shift by, unsigned
+    output reg  [BITS-1:0]       shifted  // what leaves the word at the top is lost
 );
 
   reg [BITS-1:0] coarse_p1;

@@ -1,28 +1,32 @@
-// narrow_multiplier: exact product of an unsigned word and up to 8 unsigned bits, in logic.
-// A DSP block would be wasted on so few bits: 8 gated rows are added in a tree of three levels.
-// Latency below, one result a clock.
+// SPDX-License-Identifier: MIT
+// narrow_multiplier: exact product of an unsigned word and an unsigned word of at most 8 bits, in
+// logic, because so few bits would waste a DSP block.
+// Eight gated rows are added by a tree of three levels.
+// Latency: LATENCY cycles (PHONG_NARROW_MULTIPLIER_LATENCY in latency.vh; 4 by default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "latency.vh"
 
 module narrow_multiplier #(
     parameter A_BITS  = 11,
-    parameter B_BITS  = 7,   // at most 8
+    parameter B_BITS  = 7,  // at most 8
     parameter LATENCY = `PHONG_NARROW_MULTIPLIER_LATENCY
 ) (
     input  wire                     clk,
-    input  wire [       A_BITS-1:0] a,
-    input  wire [       B_BITS-1:0] b,
-    output wire [A_BITS+B_BITS-1:0] product
+    input  wire [A_BITS-1:0]        a,       // unsigned
+    input  wire [B_BITS-1:0]        b,       // unsigned
+    output wire [A_BITS+B_BITS-1:0] product  // unsigned
 );
 
-  localparam ROWS = 8;
+  localparam ROWS = 8;  // one per bit of b, zero-extended
 
   wire [ROWS-1:0] rows = {{ROWS - B_BITS{1'b0}}, b};
 
-  reg [A_BITS-1:0] row_p1[0:7];
-  reg [A_BITS+1:0] pair_p2[0:3];
-  reg [A_BITS+3:0] quad_p3[0:1];
-  reg [A_BITS+7:0] all_p4;
+  reg [A_BITS-1:0] row_p1[0:7];   // a, or 0 where the bit of b is 0
+  reg [A_BITS+1:0] pair_p2[0:3];  // sums of 2 rows
+  reg [A_BITS+3:0] quad_p3[0:1];  // sums of 4 rows
+  reg [A_BITS+7:0] all_p4;        // sum of 8 rows
 
   integer i;
   always @(posedge clk) begin

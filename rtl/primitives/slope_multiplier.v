@@ -1,6 +1,9 @@
-// slope_multiplier: exact product of two unsigned words: in logic if b is of at most 8 bits, else
-// in
-// a DSP block, made as late. One result a clock; latency below.
+// SPDX-License-Identifier: MIT
+// slope_multiplier: exact product of two unsigned words: in logic (narrow_multiplier) if `b` has at
+// most 8 bits, else in a DSP block, delayed to the same latency.
+// Latency: LATENCY cycles (PHONG_NARROW_MULTIPLIER_LATENCY in latency.vh; 4 by default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "latency.vh"
 
@@ -10,9 +13,9 @@ module slope_multiplier #(
     parameter LATENCY = `PHONG_NARROW_MULTIPLIER_LATENCY
 ) (
     input  wire                     clk,
-    input  wire [       A_BITS-1:0] a,
-    input  wire [       B_BITS-1:0] b,
-    output wire [A_BITS+B_BITS-1:0] product
+    input  wire [A_BITS-1:0]        a,       // unsigned
+    input  wire [B_BITS-1:0]        b,       // unsigned
+    output wire [A_BITS+B_BITS-1:0] product  // unsigned
 );
 
   generate

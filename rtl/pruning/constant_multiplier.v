@@ -1,29 +1,32 @@
-// constant_multiplier: exact product of a word and a constant of the build, in logic: a tree of
-// additions and subtractions of the shifted word, one for each digit of the constant that is not 0
-// in canonical signed form (-1, 0, 1, never two digits side by side).
-// Latency below: one clock a level of the tree, which has as few as the digits allow; what is left
-// of LATENCY is waiting. One result a clock.
+// SPDX-License-Identifier: MIT
+// constant_multiplier: exact product of a word and a constant of the build, in logic.
+// The constant is recoded to canonical signed digits: digits -1, 0, 1 with no two neighbours both
+// other than 0. A tree of adders and subtractors sums the shifted words of the digits other than 0.
+// Latency: LATENCY cycles (a parameter): one per level of the tree, the rest is a delay line.
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 
 module constant_multiplier #(
-    parameter BITS          = 18,
+    parameter BITS          = 18,  // width of the word
     parameter IS_SIGNED     = 1,   // the word; 1: two's complement, 0: unsigned
     parameter CONSTANT      = 1,   // 0 or more
-    parameter CONSTANT_BITS = 18,  // at most 24
-    parameter LATENCY       = 4    // as many as levels, or more
+    parameter CONSTANT_BITS = 18,  // width of CONSTANT, at most 24
+    parameter LATENCY       = 4    // at least the levels of the tree
 ) (
     input  wire                          clk,
-    input  wire [              BITS-1:0] word,
-    output wire [BITS+CONSTANT_BITS-1:0] product
+    input  wire [BITS-1:0]               word,    // format as IS_SIGNED says
+    output wire [BITS+CONSTANT_BITS-1:0] product  // format as IS_SIGNED says
 );
 
-  // Adding twice a number to itself carries where ones are side by side: what differs are digits.
+  // Recoding of the constant C: 2 C = 3 C - C, bit by bit, so digit p is bit p + 1 of 3 C minus bit
+  // p + 1 of C. The digit is not 0 where these bits differ, and -1 where only C has the bit.
   localparam [31:0] ONCE = CONSTANT;
   localparam [31:0] THRICE = 3 * ONCE;
   localparam [31:0] DIGITS = (ONCE ^ THRICE) >> 1;
   localparam [31:0] MINUS = (ONCE & ~THRICE) >> 1;
 
-  // How many digits there are, and the place of the k-th from the top.
+  // Number of digits other than 0.
   function integer count(input integer unused);
     integer p;
     begin
@@ -32,6 +35,7 @@ module constant_multiplier #(
     end
   endfunction
 
+  // Position of the k-th digit other than 0, counted from the top, k from 0.
   function integer place(input integer k);
     integer p, seen;
     begin
@@ -46,14 +50,14 @@ module constant_multiplier #(
     end
   endfunction
 
-  localparam COUNT = count(0);
-  localparam LEVELS = COUNT > 2 ? $clog2(COUNT) : 1;
+  localparam COUNT = count(0);                        // digits other than 0
+  localparam LEVELS = COUNT > 2 ? $clog2(COUNT) : 1;  // of the tree; one cycle each
   localparam OUT_BITS = BITS + CONSTANT_BITS;
-  localparam WIDE = OUT_BITS + 2;
+  localparam WIDE = OUT_BITS + 2;                     // width of a node
 
-  // Node i of level l is the sum over digits i << l and the 2^l - 1 after it, with the sign of the
-  // first: its factor is positive, and below twice the first digit.
-  wire [WIDE-1:0] node[0:(2<<LEVELS)-1];  // heap: level l starts at 2^(LEVELS-l)
+  // Node i of level l sums the 2^l digits from number i << l on, all relative to the sign of the
+  // first of them. Its factor is positive and less than twice the weight of that digit.
+  wire [WIDE-1:0] node[0:(2<<LEVELS)-1];  // a heap: level l starts at 2^(LEVELS-l)
 
   genvar l, i;
   generate
@@ -68,10 +72,10 @@ module constant_multiplier #(
 
     for (l = 1; l <= LEVELS; l = l + 1) begin : gen_level
       for (i = 0; i < (1 << (LEVELS - l)); i = i + 1) begin : gen_node
-        localparam FIRST = i << l;
-        localparam SECOND = FIRST + (1 << (l - 1));
+        localparam FIRST = i << l;                      // number of the left operand's first digit
+        localparam SECOND = FIRST + (1 << (l - 1));     // of the right operand's
         localparam SUM_BITS = BITS + place(FIRST) + 2;
-        localparam LEFT = (2 << (LEVELS - l)) + 2 * i;
+        localparam LEFT = (2 << (LEVELS - l)) + 2 * i;  // place in the heap
         localparam HERE = (1 << (LEVELS - l)) + i;
 
         if (FIRST < COUNT) begin : gen_sum

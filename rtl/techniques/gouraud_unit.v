@@ -1,6 +1,11 @@
-// gouraud_unit: the paper's Fig. 3 -- intensities from the vertices, interpolated linearly along
-// the span, one interpolator a colour. No normal, no shading function, no multiplier.
-// One pixel a clock; latency below, from the interpolators, which themselves have 1 from load.
+// SPDX-License-Identifier: MIT
+// gouraud_unit: Gouraud shading: the intensities of the vertices, interpolated linearly along the
+// span (Phong 1975, Fig. 3), one interpolator per colour channel. There is no normal, no shading
+// function and no multiplier.
+// Latency: LATENCY cycles from a pixel of span_walker to its colour (PHONG_INTENSITY_CODE_LATENCY
+// in latency.vh; 3 by default).
+// Throughput: one pixel per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
@@ -8,22 +13,23 @@
 module gouraud_unit (
     input wire clk,
 
-    // a span
-    input  wire                                            advance,   // take the next pixel
-    // it is the first of the span with `values`
-    input  wire                                            load,
-    // {step, start} of {blue, green, red}, s1.30
-    input  wire [2*`PHONG_CHANNELS*`PHONG_NORMAL_BITS-1:0] values,
-    // an intensity has left its word since load
-    output wire                                            overflow,
+    // control from span_walker; `load` acts only together with `advance`
+    input wire advance,  // 1: move to the next pixel
+    input wire load,     // 1: the current pixel ends its span; the next one starts from `values`
 
-    // a pixel
-    output wire [`PHONG_COLOUR_BITS-1:0] red,    // codes
-    output wire [`PHONG_COLOUR_BITS-1:0] green,
-    output wire [`PHONG_COLOUR_BITS-1:0] blue
+    // offered span: {step of blue, green, red, start of blue, green, red}, s1.30 each
+    input wire [2*`PHONG_CHANNELS*`PHONG_NORMAL_BITS-1:0] values,
+
+    // current pixel
+    output wire overflow,  // an intensity has left its word since the span's first pixel
+
+    // colour of a pixel
+    output wire [`PHONG_COLOUR_BITS-1:0] red,    // code, 0 to 255
+    output wire [`PHONG_COLOUR_BITS-1:0] green,  // code, 0 to 255
+    output wire [`PHONG_COLOUR_BITS-1:0] blue    // code, 0 to 255
 );
 
-  localparam CHANNELS    = `PHONG_CHANNELS;  // 3, or 1 for grey
+  localparam CHANNELS    = `PHONG_CHANNELS;  // 3: red, green, blue; 1: grey
   localparam VALUE_BITS  = `PHONG_NORMAL_BITS;
   localparam COLOUR_BITS = `PHONG_COLOUR_BITS;
   localparam LATENCY     = `PHONG_INTENSITY_CODE_LATENCY;
@@ -34,7 +40,7 @@ module gouraud_unit (
   genvar c;
   generate
     for (c = 0; c < CHANNELS; c = c + 1) begin : gen_channel
-      wire [VALUE_BITS-1:0] intensity;  // s1.30
+      wire [VALUE_BITS-1:0] intensity;  // s1.30, of the current pixel
 
       linear_interpolator u_interpolator (
           .clk(clk),

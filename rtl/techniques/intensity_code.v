@@ -1,6 +1,10 @@
-// intensity_code: the code of an intensity that may have left [0, 1] by a step's rounding,
+// SPDX-License-Identifier: MIT
+// intensity_code: the colour code of an interpolated intensity S,
 //   code = floor(255 clamp(S, 0, 1) + 1/2).
-// One result a clock; latency below.
+// The clamp is needed because the rounding of steps may carry S out of [0, 1].
+// Latency: LATENCY cycles (PHONG_INTENSITY_CODE_LATENCY in latency.vh; 3 by default).
+// Throughput: one result per cycle.
+// Reset: none.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
@@ -8,7 +12,7 @@
 module intensity_code (
     input  wire                          clk,
     input  wire [`PHONG_NORMAL_BITS-1:0] value,  // s1.30, S of one channel
-    output reg  [`PHONG_COLOUR_BITS-1:0] colour  // code
+    output reg  [`PHONG_COLOUR_BITS-1:0] colour  // code, 0 to 255
 );
 
   localparam VALUE_BITS         = `PHONG_NORMAL_BITS;
@@ -18,10 +22,10 @@ module intensity_code (
   localparam COLOUR_BITS        = `PHONG_COLOUR_BITS;
   localparam LATENCY            = `PHONG_INTENSITY_CODE_LATENCY;
 
-  localparam SIGN = VALUE_BITS - 1;
-  localparam DROP = VALUE_FRACTION - INTENSITY_FRACTION;
+  localparam SIGN = VALUE_BITS - 1;                       // sign bit of `value`
+  localparam DROP = VALUE_FRACTION - INTENSITY_FRACTION;  // fraction bits cut off
 
-  // ---- clamp, cut ----
+  // ---- clamp: to [0, 1], then cut ----
   wire at_least_one = |value[SIGN-1:VALUE_FRACTION];
 
   reg [INTENSITY_BITS-1:0] intensity_p1;  // u1.24

@@ -1,43 +1,57 @@
 # SPDX-License-Identifier: MIT
 """One page of all results, build/report/index.html: `phong75 report`.
 
-Pictures, cycles, error over run time, stability, the error budget and the records of the long runs,
-from the JSON and CSV that the other targets write; scenes without a current result are run first.
-The page holds everything it shows: no network, no other file. A part whose data is missing says
-which command makes it. Exit code: 0; 2 if the page could not be made.
+The page shows pictures, cycles, error over run time, stability, the error budget and the records of
+the long runs, from the JSON and CSV files of the other targets. Scenes without a current result are
+run first. The page is one file that needs no network: pictures are WebP without loss, plotly.js is
+packed with gzip. Together that is less than LIMIT_BYTES. A part whose data is missing names the
+command that makes it. Exit code: 0; 2 if the page could not be made.
 """
 
 from __future__ import annotations
 
 import base64
 import csv
+import gzip
 import itertools
 import json
+import re
 import subprocess
 from dataclasses import dataclass, field
+from io import BytesIO
 from pathlib import Path
 
 import jinja2
 import numpy as np
 import plotly.graph_objects as go
+from markupsafe import Markup, escape
+from PIL import Image
 from plotly.offline import get_plotlyjs
 
 from phong75.model.analysis import error_budget
-from phong75.model.analysis.pruning import Row, prune
+from phong75.model.analysis.pruning import FeatureRow, prune
 from phong75.model.analysis.run_report import SCHEMA, failures
 from phong75.model.config import DEFAULT as C
 from phong75.model.config import TECHNIQUES
 from phong75.model.frame import InputError
-from phong75.model.front.scene import bundled_scenes
+from phong75.model.front.scene import bundled_scenes, load_scene
 from phong75.model.spans import read_spans
+from phong75.model.studies import methods, pareto, tessellation
+from phong75.model.studies.charts import TECHNIQUE_NAMES
 from phong75.scripts import console, recorded
 from phong75.scripts import run as run_scene
 from phong75.scripts.console import Steps
+from phong75.scripts.docs.tables import HardwareRow, hardware_rows
 from phong75.scripts.scene_results import SCHEMA as RESULTS
 from phong75.scripts.stability import SCHEMA as STABILITY
+from phong75.scripts.studies import artifact_runs
 from phong75.sim.design import BUILD, PACKAGE
 from phong75.sim.frame import run_frame
 
+#: The page weighs less than this.
+LIMIT_BYTES = 5_000_000
+
+#: Markers of the curves, one a method.
 SHAPES = ("circle", "square", "diamond", "triangle-up", "x", "cross", "star", "pentagon")
 #: Colours that can be told apart with any kind of colour vision, on white and on black.
 COLOURS = (
@@ -47,21 +61,28 @@ COLOURS = (
 #: Columns of the sweep's tables that can be axes, and their names.
 COSTS = {
     "frame_us": "run time of all frames, µs", "cycles": "cycles of all frames",
-    "dsp": "multipliers", "lut": "LUT sites", "ff": "flip-flops",
+    "dsp": "multipliers", "lut_sites": "LUT sites", "ff": "flip-flops",
     "simulate_s": "host: seconds of RTL simulation", "model_s": "host: seconds of the model",
 }  # fmt: skip
 ERRORS = {
     "rms_lsb": "RMS error, LSB", "max_lsb": "largest error, LSB", "p999_lsb": "99.9 % error, LSB",
     "mean_lsb": "mean error, LSB", "wrong": "share not correctly rounded",
 }  # fmt: skip
-#: More of them in the study of tessellation.
-SURFACE_ERRORS = {
-    "rms_lsb": "RMS error, LSB", "highlight_rms_lsb": "RMS error in highlights, LSB",
-    "facing_rms_lsb": "RMS error facing the eye, LSB", "max_lsb": "largest error, LSB",
-    "p999_lsb": "99.9 % error, LSB", "mean_lsb": "mean error, LSB",
-    "method_rms_lsb": "RMS error before rounding, LSB",
-    "method_max_lsb": "largest error before rounding, LSB",
+#: Errors in the study of tessellation: of the techniques themselves in float64, and of the RTL's
+#: codes. The cubic interpolant has no RTL and no codes.
+UNROUNDED_ERRORS = {
+    "method_rms_lsb": "not rounded: RMS error, LSB",
+    "highlight_rms_lsb": "not rounded: RMS error in highlights, LSB",
+    "facing_rms_lsb": "not rounded: RMS error facing the eye, LSB",
+    "method_max_lsb": "not rounded: largest error, LSB",
 }  # fmt: skip
+CODE_ERRORS = {
+    "rms_lsb": "codes of the RTL: RMS error, LSB",
+    "max_lsb": "codes of the RTL: largest error, LSB",
+    "p999_lsb": "codes of the RTL: 99.9 % error, LSB",
+    "mean_lsb": "codes of the RTL: mean error, LSB",
+}  # fmt: skip
+SURFACE_ERRORS = UNROUNDED_ERRORS | CODE_ERRORS
 SIZES = {"triangles": "triangles", "cycles": "cycles a frame", "spans": "spans"}
 
 #: Errors of perfect rounding, where there is one figure for it.
@@ -75,7 +96,7 @@ TESSELLATION = ("shape", "technique", "level", "triangles", "spans", "cycles", "
 
 @dataclass
 class View:
-    """One picture of a scene: its key, its label, the PNG as a data URI."""
+    """A picture of a scene: its key, its label, and the picture as a data URI."""
 
     key: str
     label: str
@@ -84,9 +105,12 @@ class View:
 
 @dataclass
 class SceneResult:
-    """A bundled scene: the report of its run, the pictures that can be laid over each other, the
-    error map, what failed, the rows of the error budget of its worst material, and what the scene
-    needs of the pipeline."""
+    """What the page shows of a bundled scene.
+
+    report: report.json of its run. views: pictures that can be laid over each other. error_map: a
+    data URI. failures: a line for each check that failed. budget: error budget of the material
+    with the largest bound. features: what the scene needs of the pipeline.
+    """
 
     name: str
     report: dict
@@ -94,12 +118,30 @@ class SceneResult:
     error_map: str
     failures: list[str]
     budget: list[error_budget.Row] = field(default_factory=list)
-    features: dict[str, Row] = field(default_factory=dict)
+    features: dict[str, FeatureRow] = field(default_factory=dict)
+
+    @property
+    def size(self) -> str:
+        """Width and height of the picture, in pixels."""
+        return size_text(self.report["size"])
+
+
+def size_text(size) -> str:
+    """(width, height) as text."""
+    return "{} × {}".format(*size)
 
 
 def data_uri(path: Path) -> str:
-    """A PNG file as a data URI. Raises OSError."""
-    return "data:image/png;base64," + base64.b64encode(path.read_bytes()).decode()
+    """The picture in `path` as a data URI: WebP, with the same pixels. Raises OSError."""
+    packed = BytesIO()
+    with Image.open(path) as picture:
+        picture.convert("RGB").save(packed, "WEBP", lossless=True, quality=75, method=4)
+    return "data:image/webp;base64," + base64.b64encode(packed.getvalue()).decode()
+
+
+def pack(text: str) -> str:
+    """`text` as gzip in base64, which the page unpacks."""
+    return base64.b64encode(gzip.compress(text.encode(), mtime=0)).decode()
 
 
 def load(path: Path, schema: int | None = None):
@@ -110,12 +152,12 @@ def load(path: Path, schema: int | None = None):
     if not path.is_file():
         return None
     try:
-        found = json.loads(path.read_text())
+        content = json.loads(path.read_text())
     except ValueError as error:
         raise InputError(f"{path}: not JSON: {error}") from None
-    if schema is not None and found.get("schema") != schema:
+    if schema is not None and content.get("schema") != schema:
         raise InputError(f"{path}: another version wrote it; remove it, or make it anew")
-    return found
+    return content
 
 
 def load_csv(path: Path, needed: tuple[str, ...]) -> list[dict]:
@@ -171,8 +213,8 @@ def run_missing(names: list[str], build: Path) -> None:
 
 def scene_result(name: str, build: Path) -> SceneResult | None:
     """What the runs of `name` left below `build`; None if it was not run."""
-    own = folder(build, name, C.technique)
-    report = load(own / "report.json", SCHEMA)
+    result = folder(build, name, C.technique)
+    report = load(result / "report.json", SCHEMA)
     if report is None:
         return None
     views = []
@@ -180,29 +222,30 @@ def scene_result(name: str, build: Path) -> SceneResult | None:
         picture = folder(build, name, key) / "frame.png"
         if picture.is_file():
             views.append(View(key, f"{title(key)}, RTL", data_uri(picture)))
-    views.append(View("reference", "reference in float64", data_uri(own / "reference.png")))
-    frame = read_spans(own / "spans", C)
+    views.append(View("reference", "reference in float64", data_uri(result / "reference.png")))
+    frame = read_spans(result / "spans", C)
     used = np.unique(frame.spans["material"]).tolist()
     budget = [error_budget.rows(material, frame, C) for material in used]
     worst = max(budget, key=lambda rows: rows[-1].bound, default=[])
     return SceneResult(
-        name, report, views, data_uri(own / "error.png"), failures(report), worst,
+        name, report, views, data_uri(result / "error.png"), failures(report), worst,
         {row.feature: row for row in prune(frame)[1]},
     )  # fmt: skip
 
 
 def title(technique: str) -> str:
-    """The name of a technique: some are those of people."""
-    return technique.capitalize() if technique in ("phong", "gouraud") else technique
+    """The name of a technique in legends and tables."""
+    return TECHNIQUE_NAMES.get(technique, technique)
 
 
 # -- plots -----------------------------------------------------------------------------------------
 
 
 def figure(traces, **layout) -> dict:
-    """A plot as data for the page; colours of paper and text are set there."""
-    made = go.Figure(traces, go.Layout(**layout))
-    return json.loads(made.to_json())
+    """A plot as data for the page, which sets the colours of paper and text itself."""
+    plot = json.loads(go.Figure(traces, go.Layout(**layout)).to_json())
+    plot["layout"].pop("template", None)  # plotly's default look: 7 kB in every plot
+    return plot
 
 
 def _axis(title: str, log: bool = False) -> dict:
@@ -226,14 +269,14 @@ def budget_plot(results: dict, scenes: list[str]) -> dict:
     traces = []
     for k, size in enumerate(sizes):
         rows = {row["scene"]: row for row in results["rows"] if row["size"] == size}
-        own = [rows[s] for s in scenes if s in rows]
+        bars = [rows[s] for s in scenes if s in rows]
         traces.append(
             go.Bar(
-                name=size, x=[r["scene"] for r in own], y=[r["cycles"] for r in own],
+                name=size, x=[r["scene"] for r in bars], y=[r["cycles"] for r in bars],
                 marker_color=COLOURS[k],
                 customdata=[
                     [r["fps"], r["pixels"], 100 * r["cycles"] / results["cycles_available"]]
-                    for r in own
+                    for r in bars
                 ],
                 hovertemplate="%{x}, " + size + "<br>%{y:,} cycles a frame (%{customdata[2]:.1f} % "
                 "of the budget)<br>%{customdata[1]:,} pixels<br>%{customdata[0]:.0f} frames/s"
@@ -245,16 +288,6 @@ def budget_plot(results: dict, scenes: list[str]) -> dict:
         traces, barmode="group", yaxis=_axis("cycles a frame"),
         **_level(limit, results["cycles_available"]),
     )  # fmt: skip
-
-
-def pareto(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """The points (cost, error) that no other beats, by cost."""
-    front, least = [], np.inf
-    for cost, error in sorted(set(points)):
-        if error < least:
-            front.append((cost, error))
-            least = error
-    return front
 
 
 def _error(row: dict, name: str) -> float | None:
@@ -275,7 +308,8 @@ def _hover(row: dict) -> str:
     ]  # fmt: skip
     if row.get("correctly_rounded") is not None:
         lines.append(f"{100 * row['correctly_rounded']:.3f} % correctly rounded")
-    hardware = [f"{row[n]:.0f} {n.upper()}" for n in ("dsp", "lut", "ff", "ebr") if row.get(n)]
+    units = {"dsp": "multipliers", "lut_sites": "LUT sites", "ff": "FF", "ebr": "block RAMs"}
+    hardware = [f"{row[n]:.0f} {unit}" for n, unit in units.items() if row.get(n)]
     if hardware:
         lines.append(", ".join(hardware))
     if row.get("longest_path"):
@@ -297,8 +331,10 @@ def clock_note(rows: list[dict]) -> str:
 
 
 def precision_plots(rows: list[dict]) -> dict[str, dict]:
-    """{"<cost>/<error>": work-precision diagram}: a curve a method, the Pareto front behind; over
-    time, open marks where the clock is stated and others are not."""
+    """{"<cost>/<error>": work-precision diagram}: a curve a method, the Pareto front behind.
+
+    Over run time, open marks are configurations whose clock is stated while others are measured.
+    """
     routed = any(row["clock_source"] != "stated" for row in rows)
     methods = list(dict.fromkeys(row["method"] for row in rows))
     plots = {}
@@ -308,7 +344,7 @@ def precision_plots(rows: list[dict]) -> dict[str, dict]:
             at = [(row, x, y) for row, x, y in at if x and y]
             if not at:
                 continue
-            front = pareto([(x, y) for _, x, y in at])
+            front = pareto.front([(x, y) for _, x, y in at])
             traces = [
                 go.Scatter(
                     name="Pareto front", x=[x for x, _ in front], y=[y for _, y in front],
@@ -319,18 +355,18 @@ def precision_plots(rows: list[dict]) -> dict[str, dict]:
             mixed = cost == "frame_us" and routed
             for k, method in enumerate(methods):
                 shape = SHAPES[(k // 2 + k) % len(SHAPES)]
-                own = sorted(((r, x, y) for r, x, y in at if r["method"] == method),
-                             key=lambda p: -p[2])  # fmt: skip
-                if own:
+                curve = sorted(((r, x, y) for r, x, y in at if r["method"] == method),
+                               key=lambda p: -p[2])  # fmt: skip
+                if curve:
                     traces.append(
                         go.Scatter(
-                            name=method, x=[p[1] for p in own], y=[p[2] for p in own],
-                            text=[_hover(p[0]) for p in own], mode="lines+markers",
+                            name=method, x=[p[1] for p in curve], y=[p[2] for p in curve],
+                            text=[_hover(p[0]) for p in curve], mode="lines+markers",
                             hovertemplate="%{text}<extra></extra>",
                             line={"color": COLOURS[k % len(COLOURS)], "width": 1.5},
                             marker={"size": 9, "symbol": [
                                 f"{shape}-open" if mixed and r["clock_source"] == "stated"
-                                else shape for r, _, _ in own
+                                else shape for r, _, _ in curve
                             ]},
                         )
                     )  # fmt: skip
@@ -342,40 +378,50 @@ def precision_plots(rows: list[dict]) -> dict[str, dict]:
 
 
 def tessellation_plots(rows: list[dict]) -> dict[str, dict]:
-    """{"<shape>/<size>/<error>": error against the true surface over the size of its mesh, a
-    curve a technique}."""
+    """{"<shape>/<size>/<error>": error against the true surface over the size of its mesh}.
+
+    A curve is a technique. A plot shows either techniques before rounding or codes of the RTL, so
+    the cubic interpolant, which has no RTL, is in the first kind only.
+    """
     plots = {}
     techniques = list(dict.fromkeys(row["technique"] for row in rows))
     shapes = dict.fromkeys(row["shape"] for row in rows)
     for shape, size, error in itertools.product(shapes, SIZES, SURFACE_ERRORS):
         traces = []
         for k, technique in enumerate(techniques):
-            own = [r for r in rows if (r["shape"], r["technique"]) == (shape, technique)]
-            own = [r for r in own if r.get(error) and r.get(size)]
-            own.sort(key=lambda r: r["triangles"])
-            if not own:
+            curve = [
+                r for r in rows
+                if (r["shape"], r["technique"]) == (shape, technique)
+                and r.get(error) and r.get(size) and (r.get("cycles") or error in UNROUNDED_ERRORS)
+            ]  # fmt: skip
+            curve.sort(key=lambda r: r["triangles"])
+            if not curve:
                 continue
             traces.append(
                 go.Scatter(
-                    name=title(technique), x=[r[size] for r in own], y=[r[error] for r in own],
-                    text=[_surface_hover(r) for r in own], hovertemplate="%{text}<extra></extra>",
-                    mode="lines+markers", line={"color": COLOURS[k % len(COLOURS)]},
+                    name=title(technique), x=[r[size] for r in curve],
+                    y=[r[error] for r in curve], text=[_surface_hover(r) for r in curve],
+                    hovertemplate="%{text}<extra></extra>", mode="lines+markers",
+                    line={"color": COLOURS[k % len(COLOURS)]},
                     marker={"symbol": SHAPES[k % len(SHAPES)], "size": 9},
                 )
             )  # fmt: skip
         if traces:
+            perfect = PERFECT.get(error) if error in CODE_ERRORS else None
             plots[f"{shape}/{size}/{error}"] = figure(
                 traces, xaxis=_axis(SIZES[size], True), yaxis=_axis(SURFACE_ERRORS[error], True),
+                **_level("perfect rounding", perfect, log=True),
             )  # fmt: skip
     return plots
 
 
 def _surface_hover(row: dict) -> str:
+    errors = SURFACE_ERRORS if row.get("cycles") else UNROUNDED_ERRORS
     lines = [f"<b>{title(row['technique'])}</b>"]
     lines += [f"{row[size]:,.0f} {words}" for size, words in SIZES.items() if row.get(size)]
     lines += [
         f"{words.replace(', LSB', '')} {row[error]:.4g} LSB"
-        for error, words in SURFACE_ERRORS.items() if row.get(error) is not None
+        for error, words in errors.items() if row.get(error) is not None
     ]  # fmt: skip
     return "<br>".join(lines)
 
@@ -406,7 +452,7 @@ def stages_plot(scenes: list[SceneResult]) -> dict:
         rows = [next(r for r in s.budget if r.stage == term) for s in scenes]
         traces.append(
             go.Bar(
-                name=term, orientation="h", y=[s.name for s in scenes],
+                name=term, orientation="h", y=[f"{s.name}, {s.size}" for s in scenes],
                 x=[white * r.bound for r in rows], text=[r.why for r in rows],
                 marker_color=COLOURS[k], textposition="none",
                 hovertemplate="%{y}, " + term + ": %{x:.4f} LSB<br>%{text}<extra></extra>",
@@ -418,11 +464,11 @@ def stages_plot(scenes: list[SceneResult]) -> dict:
 # -- the page --------------------------------------------------------------------------------------
 
 
-def recorded_results(folder: Path) -> list[dict]:
-    """The records of the long runs, in the order of the README, then the others."""
-    found = {path.stem: load(path) for path in sorted(folder.glob("*.json"))}
-    known = [name for name in recorded.NAMES if name in found]
-    return [found[name] for name in [*known, *[n for n in found if n not in known]]]
+def recorded_results() -> list[tuple[HardwareRow, dict]]:
+    """The lines of the long runs, each with its record."""
+    rows = hardware_rows()
+    records = {row.record: recorded.load(row.record) for row in rows}
+    return [(row, records[row.record]) for row in rows]
 
 
 def commit() -> str:
@@ -440,28 +486,32 @@ def load_orders(build: Path) -> dict:
 
 @dataclass
 class Argument:
-    """One of the paper's arguments for interpolating normals: its picture (a data URI, or empty),
-    and rows of figures, (what, one figure a technique)."""
+    """One of the paper's arguments for interpolating normals.
+
+    shown: scenes and sizes. text: what is measured. picture: a data URI, or empty. rows: figures,
+    (what, one figure a technique).
+    """
 
     name: str
-    about: str
+    shown: str
+    text: str
     picture: str
     rows: list[tuple[str, list[str]]]
 
 
 def paper_arguments(sweep: Path) -> list[Argument]:
     """What the study of the paper's arguments left in `sweep`; empty if it was not run."""
-    found = load(sweep / "arguments.json")
-    if not found:
+    study = load(sweep / "arguments.json")
+    if not study:
         return []
-    bands, flicker, turned = [], [], found["orientation"]
-    for shape, levels in found["mach_bands"].items():
+    bands, flicker, turned = [], [], study["orientation"]
+    for shape, levels in study["mach_bands"].items():
         for level, by in levels.items():
             figures = [f"{n(by[t]['slope_rms'])}, {n(by[t]['intensity_rms'])}" for t in TECHNIQUES]
             bands.append((f"{shape} of {level} steps", figures))
-    for shape, by in found["flicker"].items():
+    for shape, by in study["flicker"].items():
         changes = [f"{n(by[t]['change_rms'])}, {by[t]['change_max']:.0f}" for t in TECHNIQUES]
-        flicker.append((f"{shape}: change a degree, LSB: RMS, largest", changes))
+        flicker.append((f"{shape}: change per degree, LSB: RMS, largest", changes))
         peaks = ["{} to {}".format(*by[t]["peak_range"]) for t in TECHNIQUES]
         flicker.append((f"{shape}: brightest code of the highlight", peaks))
     spread = [
@@ -469,61 +519,93 @@ def paper_arguments(sweep: Path) -> list[Argument]:
          ["–", n(turned[kind]["largest_spread_lsb"]), "–"])
         for kind in ("quadrilateral", "triangles")
     ]  # fmt: skip
-    kinds = (
-        ("mach", "Mach bands", "Jumps across the edges that scan lines cross: of the slope of the "
-         "intensity (LSB a dot) and of the intensity (LSB), RMS. Flat faces have no slope.", bands),
-        ("flicker", "Flicker", "An object turns by a degree a frame about its own axis through 30 "
-         "frames; its picture should not change.", flicker),
-        ("orientation", "Orientation", "A black and white quadrilateral as it turns: its middle "
-         "changes with Gouraud's interpolation along scan lines; over triangles nothing does.",
-         spread),
-    )  # fmt: skip
+
+    def picture(name: str) -> str:
+        path = sweep / f"{name}.png"
+        return data_uri(path) if path.is_file() else ""
+
+    shapes = ", ".join(study["mach_bands"])
+    turning = ", ".join(study["flicker"])
     return [
-        Argument(name, about, data_uri(path) if (path := sweep / f"{file}.png").is_file() else "",
-                 rows)
-        for file, name, about, rows in kinds
+        Argument(
+            "Mach bands", f"{shapes}; {size_text(tessellation.SIZE)}",
+            "Jumps across the edges that scan lines cross, RMS: of the slope of the intensity (LSB "
+            "per pixel), and of the intensity (LSB). Flat faces have no slope.",
+            picture("mach"), bands,
+        ),
+        Argument(
+            "Flicker", f"{turning}; {artifact_runs.FRAMES} frames of "
+            f"{size_text(artifact_runs.FLICKER_SIZE)}",
+            "An object turns about its own axis, a degree a frame. Its picture should not change.",
+            picture("flicker"), flicker,
+        ),
+        Argument(
+            "Orientation", f"a square; {size_text([artifact_runs.SQUARE_SIZE] * 2)}",
+            "A black and white quadrilateral turns. Its middle changes with Gouraud's "
+            "interpolation along scan lines. Over triangles nothing changes.",
+            picture("orientation"), spread,
+        ),
     ]  # fmt: skip
 
 
 def n(value: float) -> str:
-    """A figure of the study: three digits, and 0 where only rounding is left."""
+    """A figure of the study with three digits; 0 if only rounding of float64 is left."""
     return "0" if abs(value) < 1e-9 else f"{value:.3g}"
 
 
-def page(build: Path = BUILD, record_folder: Path = recorded.FOLDER) -> str:
+def precision_frames() -> list[str]:
+    """Scene and size of each frame that the precision sweep measures, and what is in it."""
+    texts = []
+    for scene, size, what in methods.FRAMES:
+        if size is None:
+            loaded = load_scene(scene)
+            size = loaded.width, loaded.height
+        texts.append(f"{Path(scene).stem} {size_text(size)} ({what})")
+    return texts
+
+
+def code(text: str) -> Markup:
+    """`text` for the page, with what stands between backticks as code."""
+    return Markup(re.sub("`([^`]*)`", r"<code>\1</code>", str(escape(text))))
+
+
+def page(build: Path = BUILD) -> str:
     """The page from what is below `build`. Raises InputError or OSError if a file is broken."""
     scenes = [s for name in bundled_scenes() if (s := scene_result(name, build))]
     results = load(build / "results.json", RESULTS)
     stability = load(build / "stability" / "report.json", STABILITY)
     precision = load_csv(build / "sweep" / "precision.csv", PRECISION)
-    tessellation = load_csv(build / "sweep" / "tessellation.csv", TESSELLATION)
+    meshes = load_csv(build / "sweep" / "tessellation.csv", TESSELLATION)
     plots = {
         "precision": precision_plots(precision),
-        "tessellation": tessellation_plots(tessellation),
+        "tessellation": tessellation_plots(meshes),
         "budget": {"": budget_plot(results, bundled_scenes())} if results else {},
         "errors": {"": error_plot(stability["errors"])} if stability else {},
         "stages": {"": stages_plot(scenes)} if any(s.budget for s in scenes) else {},
     }
     costs = {key: title for key, title in COSTS.items() if f"{key}/max_lsb" in plots["precision"]}
-    shapes = {row["shape"]: row["shape"] for row in tessellation}
+    shapes = {row["shape"]: row["shape"] for row in meshes}
     surface_errors = {
-        key: words
-        for key, words in SURFACE_ERRORS.items()
-        if tessellation and key in tessellation[0]
+        key: words for key, words in SURFACE_ERRORS.items() if meshes and key in meshes[0]
     }
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(Path(__file__).parent), autoescape=True,
         undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
+    environment.filters["code"] = code
     return environment.get_template("report.html.j2").render(
         scenes=scenes, results=results, stability=stability, precision=precision,
         clock_note=clock_note(precision) if precision else "",
-        tessellation=tessellation, records=recorded_results(record_folder), costs=costs,
+        precision_frames=precision_frames() if precision else [],
+        tessellation=meshes, tessellation_size=size_text(tessellation.SIZE),
+        records=recorded_results(), costs=costs,
         errors=ERRORS,
         shapes=shapes, sizes=SIZES, surface_errors=surface_errors,
         arguments=paper_arguments(build / "sweep"), technique_names=[title(t) for t in TECHNIQUES],
         orders=load_orders(build),
-        title=title, plots=plots, plotly=get_plotlyjs(), commit=commit(),
+        title=title, plots=plots, packed_plots=pack(json.dumps(plots)),
+        packed_plotly=pack(get_plotlyjs()) if any(plots.values()) else "",
+        commit=commit(),
     )  # fmt: skip
 
 

@@ -17,7 +17,7 @@ from rich.table import Table
 from phong75.model import twin
 from phong75.model.analysis import metrics
 from phong75.model.config import TECHNIQUES
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.model.studies import charts, shading_artifacts, tessellation
 from phong75.model.studies.surfaces import SURFACES
 from phong75.scripts.console import MismatchError
@@ -29,6 +29,8 @@ FOLDER = BUILD / "sweep"
 LEVELS = {"sphere": (16, 32, 64), "torus": (16, 32, 64), "patch": (4, 8, 16)}
 TURNING = {"sphere": 16, "torus": 32}
 FRAMES = 30
+FLICKER_SIZE = (320, 240)
+SQUARE_SIZE = 200
 
 
 def shaded_by_rtl(frames: list, technique: str) -> list:
@@ -57,7 +59,7 @@ def mach(levels=LEVELS, size=tessellation.SIZE) -> dict:
     return out
 
 
-def flicker(turning=TURNING, count: int = FRAMES, size=(320, 240)) -> tuple[dict, dict, dict]:
+def flicker(turning=TURNING, count: int = FRAMES, size=FLICKER_SIZE) -> tuple[dict, dict, dict]:
     """{shape: {technique: changes}}, and what `charts.flicker_chart` shows."""
     out: dict = {}
     maps, curves = {}, {}
@@ -70,13 +72,13 @@ def flicker(turning=TURNING, count: int = FRAMES, size=(320, 240)) -> tuple[dict
             for picture, p in zip(film, pixels, strict=True):
                 picture[p.y, p.x] = p.rgb
             change = np.abs(np.diff(film, axis=0))
-            title = f"{shape} of {level}, {technique}"
+            title = f"{shape} of {level}, {charts.TECHNIQUE_NAMES[technique]}"
             maps[title] = change.max(axis=(0, 3))
             curves[title] = np.sqrt(np.nanmean(change**2, axis=(1, 2, 3))).tolist()
     return out, maps, curves
 
 
-def orientation(size: int = 200) -> tuple[dict, dict]:
+def orientation(size: int = SQUARE_SIZE) -> tuple[dict, dict]:
     """Numbers of `shading_artifacts.orientation`, with the RTL's two triangles; and pictures."""
     found = shading_artifacts.orientation()
     angles = (0.0, 45.0, 90.0)
@@ -106,13 +108,18 @@ def run(progress: Callable[[str], None] = lambda text: None, folder: Path = FOLD
     found: dict = {"mach_bands": mach()}
     level = LEVELS["sphere"][0]
     profiles = {t: shading_artifacts.profile("sphere", level, t) for t in (*TECHNIQUES, "true")}
-    charts.mach_chart(profiles, folder / "mach")
+    size = "{} × {}".format(*tessellation.SIZE)
+    scene = f"sphere of {level} steps, {size}, before rounding"
+    charts.mach_chart(profiles, folder / "mach", scene)
     progress("flicker")
     found["flicker"], maps, curves = flicker()
-    charts.flicker_chart(maps, curves, folder / "flicker")
+    size = "{} × {}".format(*FLICKER_SIZE)
+    scene = f"{FRAMES} frames of {size}, a degree apart; codes of the RTL"
+    charts.flicker_chart(maps, curves, folder / "flicker", scene)
     progress("orientation")
     found["orientation"], pictures = orientation()
-    charts.orientation_chart(pictures, folder / "orientation")
+    scene = f"Gouraud shading, {SQUARE_SIZE} × {SQUARE_SIZE}"
+    charts.orientation_chart(pictures, folder / "orientation", scene)
     (folder / "arguments.json").write_text(json.dumps(found, indent=2) + "\n")
     return found
 

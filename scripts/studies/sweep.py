@@ -24,7 +24,8 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from phong75.model.config import Config
-from phong75.model.studies.charts import cost_chart, pareto, time_chart
+from phong75.model.studies import pareto
+from phong75.model.studies.charts import cost_chart, time_chart
 from phong75.model.studies.methods import CONFIGS, Point, points
 from phong75.scripts import console, recorded
 from phong75.scripts.configurations import unknown
@@ -37,22 +38,9 @@ STATED_MHZ = 200.0
 COLUMNS = (
     "name", "family", "method", "label", "cycles", "clock_mhz", "clock_source", "frame_us",
     "max_lsb", "rms_lsb", "p999_lsb", "mean_lsb", "correctly_rounded", "psnr_db", "simulate_s",
-    "model_s", "dsp", "lut", "ff", "ebr", "pareto", "multipliers", "latency_cycles", "pixels",
+    "model_s", "dsp", "lut_sites", "ff", "ebr", "pareto", "multipliers", "latency_cycles", "pixels",
     "mismatches", "port_max_lsb", "bound_lsb", "pareto_hardware", "longest_path",
 )  # fmt: skip
-
-
-#: What the README shows: what a designer would choose between.
-SHOWN = (
-    "default", "quadratic_spans_18", "dot_first_18", "table_2048", "lines_32", "parabolas_8",
-    "table_128_newton", "fast_inverse_1", "fast_inverse_2", "not_normalized", "power_tables_32",
-    "squaring_18",
-    "schlick_18", "interpolator_16", "interpolator_20", "width_14", "width_10",
-)  # fmt: skip
-HEADER = """\
-| configuration | method, size | multipliers | LUT sites | latency, clocks | clock, MHz | \
-frames, µs | RMS, LSB | largest, LSB | bound | rounded right |
-|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|"""
 
 
 def names(route: str) -> set[str]:
@@ -89,9 +77,8 @@ def hardware(config: Config, area: bool, route: bool) -> dict:
         folder.mkdir(parents=True, exist_ok=True)
         used, clock = ecp5.synthesize(config, folder)["resources"], stated
     else:
-        return stated | dict.fromkeys(("dsp", "lut", "ff", "ebr"))
-    sites = used["lut"] + 2 * used["carry"] + 4 * used["lut_ram"]
-    return {"dsp": used["dsp"], "lut": sites, "ff": used["ff"], "ebr": used["ebr"], **clock}
+        return stated | dict.fromkeys(("dsp", "lut_sites", "ff", "ebr"))
+    return {name: used[name] for name in ("dsp", "lut_sites", "ff", "ebr")} | clock
 
 
 def row(point: Point, area: bool, route: bool) -> dict:
@@ -132,40 +119,21 @@ def unrouted(rows: list[dict]) -> str:
     )
 
 
-def readme(rows: list[dict]) -> str:
-    """The README's table of `SHOWN`. Bounds are of the error against the integers at the ports."""
-
-    def clock(found):
-        stated = " (stated)" if found["clock_source"] == "stated" else ""
-        return f"{found['clock_mhz']:.0f}{stated}"
-
-    by_name = {found["name"]: found for found in rows}
-    lines = [HEADER]
-    for name in SHOWN:
-        found = by_name[name]
-        bound = "none derived" if found["bound_lsb"] is None else f"{found['bound_lsb']:.2f}"
-        lines.append(
-            f"| {name} | {found['method']}, {found['label']} | {found['multipliers']} "
-            f"| {'-' if found['lut'] is None else found['lut']} | {found['latency_cycles']} "
-            f"| {clock(found)} | {found['frame_us']:.0f} "
-            f"| {found['rms_lsb']:.3f} | {found['max_lsb']:.2f} "
-            f"| {bound} | {100 * found['correctly_rounded']:.2f} % |"
-        )
-    return "\n".join(lines)
+#: Columns that are not recorded: the name is the key, seconds of simulation and model are those of
+#: one machine, and the fronts follow from the others.
+UNRECORDED = ("name", "simulate_s", "model_s", "pareto", "pareto_hardware")
 
 
-def front(rows: list[dict]) -> str:
-    """The Pareto front of RMS error and run time, the fastest first, as the README names it.
+def figures(rows: list[dict]) -> dict:
+    """What is recorded of `rows`: {"configurations": {name: COLUMNS but UNRECORDED}}, reals with 6
+    digits."""
 
-    Errors to a thousandth of an LSB: what is less cannot be seen, and would make half of them part
-    of the front.
-    """
-    error = [round(found["rms_lsb"], 3) for found in rows]
-    on = pareto([found["frame_us"] for found in rows], error)
-    shown = sorted(
-        (f["frame_us"], f["name"], e) for f, e, k in zip(rows, error, on, strict=True) if k
-    )
-    return ", ".join(f"{name} ({time:.0f} µs, {e:.3f} LSB)" for time, name, e in shown)
+    def short(value):
+        return float(f"{value:.6g}") if isinstance(value, float) else value
+
+    names = [name for name in COLUMNS if name not in UNRECORDED]
+    kept = {found["name"]: {name: short(found[name]) for name in names} for found in rows}
+    return {"configurations": kept}
 
 
 def write_csv(rows: list[dict], path: Path) -> None:
@@ -186,16 +154,15 @@ def write_csv(rows: list[dict], path: Path) -> None:
 
 def finish(rows: list[dict], folder: Path = FOLDER) -> None:
     """Mark the Pareto fronts in `rows`, and write CSV and charts into `folder`."""
-    error = [found["rms_lsb"] for found in rows]
-    front = pareto([found["frame_us"] for found in rows], error)
-    sized = [found for found in rows if found["dsp"] is not None]
-    # By hardware a point counts that no other beats in multipliers, logic and error together.
-    keys = [(found["dsp"], found["lut"], found["rms_lsb"]) for found in sized]
+    front = pareto.on_front([(found["frame_us"], found["rms_lsb"]) for found in rows])
     for found, on in zip(rows, front, strict=True):
         found["pareto"], found["pareto_hardware"] = int(on), None
-    for found, key in zip(sized, keys, strict=True):
-        beaten = any(k != key and all(a <= b for a, b in zip(k, key, strict=True)) for k in keys)
-        found["pareto_hardware"] = int(not beaten)
+    sized = [found for found in rows if found["dsp"] is not None]
+    front = pareto.on_front(
+        [(found["dsp"], found["lut_sites"], found["rms_lsb"]) for found in sized]
+    )
+    for found, on in zip(sized, front, strict=True):
+        found["pareto_hardware"] = int(on)
     folder.mkdir(parents=True, exist_ok=True)
     write_csv(rows, folder / "precision.csv")
     time_chart(rows, folder / "precision_time")
@@ -249,8 +216,8 @@ def main(area: bool, route: set[str], record: bool) -> int:
     wrong = failures(rows)
     if record:
         recorded.record(
-            "sweep", "make sweep", ("verilator", "numpy"), [], {"configurations": len(rows)},
-            failed=bool(wrong), readme=readme(rows), front=front(rows),
+            "sweep", "make sweep", ("verilator", "numpy"), figures(rows),
+            {"configurations": len(rows)}, failed=bool(wrong),
         )  # fmt: skip
     for line in wrong:
         console.failure(line)

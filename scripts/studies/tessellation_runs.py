@@ -29,7 +29,7 @@ from phong75.sim.design import BUILD
 from phong75.sim.frame.run_frame import Job, simulate_jobs
 
 FOLDER = BUILD / "sweep"
-#: Meshes that the README shows.
+#: Meshes whose errors are recorded: {shape: level}.
 SHOWN = {"sphere": 32, "torus": 32, "patch": 8}
 #: cycles are empty for the cubic, which has no hardware. The errors are those of the codes that
 #: came out of the RTL; method_...: of the technique itself, before any rounding (for the cubic
@@ -175,47 +175,14 @@ def table(found: dict) -> Table:
     return out
 
 
-def readme(rows: list[dict], found: dict) -> str:
-    """The README's table and sentences, Markdown, of `rows` and of what `artifact_runs.run`
-    found."""
-    methods = ("flat", "gouraud", "phong", "cubic")
-    orders = summary(rows)["orders"]
-    lines = [
-        "| mesh | what | flat | Gouraud | Phong | cubic, model only |",
-        "|---|---|--:|--:|--:|--:|",
+def figures(rows: list[dict], found: dict) -> dict:
+    """What is recorded of `rows` and of what `artifact_runs.run` found."""
+    meshes = [
+        {name: value for name, value in row.items() if value != ""}
+        for row in rows
+        if SHOWN[row["shape"]] == row["level"]
     ]
-
-    def line(what: str, values, mesh: str = ""):
-        cells = [f"{v:.2f}" if isinstance(v, float) else v for v in values]
-        lines.append(f"| {mesh} | {what} | {' | '.join(cells)} |")
-
-    for shape, level in SHOWN.items():
-        own = {r["technique"]: r for r in rows if (r["shape"], r["level"]) == (shape, level)}
-        mesh = f"{shape}, {own['flat']['triangles']} triangles"
-        line("RMS error, LSB", [own[m]["method_rms_lsb"] for m in methods], mesh)
-        line("in the highlight", [own[m]["highlight_rms_lsb"] for m in methods])
-        line("order of convergence", [orders[shape][m]["facing_rms"] for m in methods])
-        jumps = found["mach_bands"][shape][level]
-        line(
-            "jump of the slope at edges, LSB a dot",
-            ["not smooth", *(jumps[m]["slope_mean"] for m in methods[1:3]), ""],
-        )
-    for shape, by in found["flicker"].items():
-        line(
-            "change in 1° of turning, LSB, RMS", [*(by[m]["change_rms"] for m in methods[:3]), ""],
-            f"{shape}, turning into itself",
-        )  # fmt: skip
-        line(
-            "brightest code, over 30 pictures",
-            [*("{} to {}".format(*by[m]["peak_range"]) for m in methods[:3]), ""],
-        )
-    square = found["orientation"]
-    for kind, name in (("quadrilateral", "square as one polygon"), ("triangles", "two triangles")):
-        line(
-            "largest dependence on orientation, LSB",
-            ["", square[kind]["largest_spread_lsb"], "", ""], name,
-        )  # fmt: skip
-    return "\n".join(lines)
+    return {"meshes": meshes, "orders": summary(rows)["orders"], **found}
 
 
 def main(record: bool) -> int:
@@ -229,10 +196,8 @@ def main(record: bool) -> int:
     console.show(table(summary(rows)), artifact_runs.table(found))
     if record:
         recorded.record(
-            "tessellation", "make tessellation", ("verilator", "numpy"), [],
+            "tessellation", "make tessellation", ("verilator", "numpy"), figures(rows, found),
             {"meshes": len(rows)},
-            readme=readme(rows, found),
-            meshes=[row for row in rows if SHOWN[row["shape"]] == row["level"]],
         )  # fmt: skip
     folder = console.shown(FOLDER)
     console.say(f"{folder}: tessellation and arguments: .csv .json .png .svg")

@@ -19,7 +19,7 @@ NAME = "clocks"
 GRADE, SEED = 6, 1
 SOURCE = f"nextpnr, grade {GRADE}, seed {SEED}"
 #: What is kept of a configuration besides key, date and commit.
-FIGURES = ("clock_mhz", "dsp", "lut", "ff", "ebr", "longest_path")
+FIGURES = ("clock_mhz", "dsp", "lut_sites", "ff", "ebr", "longest_path")
 
 
 def key(config: Config) -> str:
@@ -30,8 +30,7 @@ def key(config: Config) -> str:
 
 def _recorded_tools() -> dict[str, str]:
     """{package: version} of the record; empty without one."""
-    tools = (recorded.load(NAME) or {}).get("tools", "")
-    return dict(tool.split(" ") for tool in tools.split(", ") if tool)
+    return (recorded.load(NAME) or {}).get("tools", {})
 
 
 def kept(config: Config) -> dict | None:
@@ -39,16 +38,16 @@ def kept(config: Config) -> dict | None:
 
     Raises BuildError.
     """
-    found = (recorded.load(NAME) or {}).get("configurations", {}).get(config.name)
+    found = recorded.figures(NAME).get("configurations", {}).get(config.name)
     if found is None or found["key"] != key(config):
         return None
-    return {name: found[name] for name in FIGURES} | {"clock_source": f"{SOURCE}, kept"}
+    return {name: found.get(name) for name in FIGURES} | {"clock_source": f"{SOURCE}, kept"}
 
 
 def keep(name: str, found: dict) -> None:
     """Keep FIGURES and "clock_key" in `found` for the configuration `name`; others stay as they
     are, but for those that the sweep has no more."""
-    old = (recorded.load(NAME) or {}).get("configurations", {})
+    old = recorded.figures(NAME).get("configurations", {})
     old[name] = {figure: found[figure] for figure in FIGURES} | {
         "key": found["clock_key"],
         "date": datetime.date.today().isoformat(),
@@ -56,4 +55,4 @@ def keep(name: str, found: dict) -> None:
     }
     configurations = {name: old[name] for name in CONFIGS if name in old}
     tools = tuple(ecp5.versions())
-    recorded.save(NAME, "make sweep ROUTE=1", tools, [], configurations=configurations)
+    recorded.save(NAME, "make sweep ROUTE=1", tools, {"configurations": configurations})

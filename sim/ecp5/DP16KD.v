@@ -1,7 +1,13 @@
-// DP16KD: simulation model of the ECP5 block RAM, for what rtl/ecp5/block_ram.v uses: 512 words of
-// 36 bits, written through port A and read through port B, which have one clock, with the output
-// register. The pins and the place of the initial values are those of Yosys's own mapping
-// (lattice/brams_map_16kd.v). Read while written gives the old word; the hardware promises nothing.
+// SPDX-License-Identifier: MIT
+// DP16KD: simulation model of the ECP5 block RAM, for the mode that rtl/ecp5/block_ram.v uses: 512
+// words of 36 bits, written through port A and read through port B on one clock, with the output
+// register. The pins and the layout of the initial values are those of Yosys's mapping
+// (lattice/brams_map_16kd.v).
+// A read in the cycle of a write to the same address returns the old word; the hardware returns an
+// undefined one.
+// Latency: 2 cycles from address to word.
+// Throughput: one read and one write per cycle.
+// Reset: RSTB clears the output register.
 `default_nettype none
 
 module DP16KD #(
@@ -111,22 +117,24 @@ module DP16KD #(
   };
 
   reg [35:0] array[0:511];
-  reg [35:0] word_p1, word_p2;
+  reg [35:0] word_p1, word_p2;  // array register, output register
 
   integer k;
   initial begin
     for (k = 0; k < 512; k = k + 1) array[k] = {ROWS[40*k+20+:18], ROWS[40*k+:18]};
   end
 
-  wire [13:0] address_a = {ADA13, ADA12, ADA11, ADA10, ADA9, ADA8, ADA7, ADA6, ADA5, ADA4, ADA3, ADA2, ADA1, ADA0};
-  wire [13:0] address_b = {ADB13, ADB12, ADB11, ADB10, ADB9, ADB8, ADB7, ADB6, ADB5, ADB4, ADB3, ADB2, ADB1, ADB0};
+  wire [13:0] address_a = {ADA13, ADA12, ADA11, ADA10, ADA9, ADA8, ADA7,
+    ADA6, ADA5, ADA4, ADA3, ADA2, ADA1, ADA0};
+  wire [13:0] address_b = {ADB13, ADB12, ADB11, ADB10, ADB9, ADB8, ADB7,
+    ADB6, ADB5, ADB4, ADB3, ADB2, ADB1, ADB0};
   wire [35:0] data = {
     {DIB17, DIB16, DIB15, DIB14, DIB13, DIB12, DIB11, DIB10, DIB9,
     DIB8, DIB7, DIB6, DIB5, DIB4, DIB3, DIB2, DIB1, DIB0},
     {DIA17, DIA16, DIA15, DIA14, DIA13, DIA12, DIA11, DIA10, DIA9,
     DIA8, DIA7, DIA6, DIA5, DIA4, DIA3, DIA2, DIA1, DIA0}
   };
-  wire [3:0] bytes = address_a[3:0];
+  wire [3:0] bytes = address_a[3:0];  // byte enables
   wire selected_a = {CSA2, CSA1, CSA0} == 3'b000;
   wire selected_b = {CSB2, CSB1, CSB0} == 3'b000;
 
@@ -150,6 +158,7 @@ module DP16KD #(
     DOA8, DOA7, DOA6, DOA5, DOA4, DOA3, DOA2, DOA1, DOA0}
   } = word_p2;
 
+  // Whether the parameters ask for the mode above.
   wire modes = DATA_WIDTH_A == 36 && DATA_WIDTH_B == 36 && REGMODE_A == "OUTREG"
       && REGMODE_B == "OUTREG" && RESETMODE == "SYNC" && ASYNC_RESET_RELEASE == "SYNC"
       && CSDECODE_A == "0b000" && CSDECODE_B == "0b000" && CLKAMUX == "CLKA" && CLKBMUX == "CLKB"

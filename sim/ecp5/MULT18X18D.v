@@ -1,5 +1,10 @@
+// SPDX-License-Identifier: MIT
 // MULT18X18D: simulation model of the ECP5 multiplier, written from Lattice's description (TN1267,
-// sysDSP) for what rtl/ecp5/multiplier.v uses: registers at the inputs and at the output, on CLK0.
+// sysDSP) for the mode that rtl/ecp5/multiplier.v uses: registers at the inputs and at the output,
+// all on CLK0.
+// Latency: 2 cycles with all registers.
+// Throughput: one product per cycle.
+// Reset: RST0, synchronous, clears all registers.
 `default_nettype none
 
 module MULT18X18D #(
@@ -24,7 +29,7 @@ module MULT18X18D #(
   wire [17:0] b = {B17, B16, B15, B14, B13, B12, B11, B10, B9,
     B8, B7, B6, B5, B4, B3, B2, B1, B0};
 
-  reg [18:0] a_held, b_held;  // with the sign that SIGNEDA, SIGNEDB give
+  reg [18:0] a_held, b_held;  // extended by the sign, or by 0 if unsigned
   reg [35:0] product_held;
 
   wire [18:0] a_in = {SIGNEDA & a[17], a};

@@ -1,1 +1,2 @@
-"""Proofs of the control and the interpolators with SymbiYosys; `make formal` runs them."""
+# SPDX-License-Identifier: MIT
+"""Formal proofs of flow control and interpolators with SymbiYosys; `make formal` runs them."""

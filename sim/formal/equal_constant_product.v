@@ -1,4 +1,6 @@
-// constant_multiplier against the product itself, of signed and of unsigned words.
+// SPDX-License-Identifier: MIT
+// equal_constant_product: proof that constant_multiplier equals the product of word and constant,
+// for an unsigned and for a signed word.
 `default_nettype none
 
 module equal_constant_product #(
@@ -8,7 +10,7 @@ module equal_constant_product #(
     parameter LATENCY       = 3
 ) (
     input wire            clk,
-    input wire [BITS-1:0] word
+    input wire [BITS-1:0] word  // of both multipliers
 );
 
   wire [BITS+CONSTANT_BITS-1:0] unsigned_product, signed_product;
@@ -39,9 +41,9 @@ module equal_constant_product #(
 
   localparam [CONSTANT_BITS-1:0] CODE = CONSTANT;
 
-  reg [LATENCY-1:0] f_there = 0;
-  reg [BITS*LATENCY-1:0] f_words;
-  wire [BITS-1:0] f_word = f_words[BITS*(LATENCY-1)+:BITS];
+  reg [LATENCY-1:0] f_there = 0;   // top bit: LATENCY cycles have passed
+  reg [BITS*LATENCY-1:0] f_words;  // the words of the last LATENCY cycles
+  wire [BITS-1:0] f_word = f_words[BITS*(LATENCY-1)+:BITS];  // the word of the products
   wire signed [BITS+CONSTANT_BITS:0] f_signed = $signed(f_word) * $signed({1'b0, CODE});
 
   always @(posedge clk) begin

@@ -1,17 +1,20 @@
-// pixel_fifo as a pruned build has it, one channel and narrow places, against the full one that is
-// given grey pixels in a small picture: the same at every port, always.
+// SPDX-License-Identifier: MIT
+// equal_pixel_fifo: proof that the pixel_fifo of a pruned build (one channel, narrow places) equals
+// the full one at every port in every cycle, for grey pixels in a small picture.
 `default_nettype none
 
 module equal_pixel_fifo #(
     parameter LATENCY = 3
 ) (
-    input wire       clk,
-    input wire       reset,
+    input wire clk,
+    input wire reset,
+
+    // inputs of both FIFOs
     input wire       pixel_valid,
-    input wire       pixel_x,
-    input wire       pixel_y,
+    input wire       pixel_x,  // 0 or 1
+    input wire       pixel_y,  // 0 or 1
     input wire       pixel_last,
-    input wire [1:0] grey,
+    input wire [1:0] grey,     // code of red, green and blue
     input wire       out_ready
 );
 
@@ -63,7 +66,7 @@ module equal_pixel_fifo #(
       .out_last(last)
   );
 
-  reg f_past = 1'b0;
+  reg f_past = 1'b0;  // not the first cycle, in which reset is assumed
   always @(posedge clk) f_past <= 1'b1;
 
   always @(*) begin

@@ -1,14 +1,17 @@
-// Properties of linear_interpolator, at the end of its text. f_exact is start + k * step in a word
-// that no span can leave; k is the number of steps since load. f_exact moves one way only, so it is
-// in format at all pixels of a span iff it is at the first and the last: that is a legal span.
-// Uses these names inside: step_held, low, low_next, carry_next, stepped, sign_before, overflow_held.
+// SPDX-License-Identifier: MIT
+// Properties of linear_interpolator, inserted before its `endmodule`.
+// f_exact is start + k * step in a word that no span can leave; k is the number of steps since the
+// load. f_exact moves in one direction only, so it is in the format at all pixels of a span if and
+// only if it is at the first and at the last: such a span is legal.
+// Signals of the module in use: step_held, low, low_next, carry_next, stepped, sign_before,
+// overflow_held.
 
-  localparam F_STEP_BITS = `PHONG_COORDINATE_BITS + 1;  // k is less than the length's 2^13
+  localparam F_STEP_BITS = `PHONG_COORDINATE_BITS + 1;  // of k, which is below 2^13
   localparam F_BITS = NORMAL_BITS + F_STEP_BITS + 1;
   localparam signed [F_BITS-1:0] F_MAX = (1 << (NORMAL_BITS - 1)) - 1;
   localparam signed [F_BITS-1:0] F_MIN = -(1 << (NORMAL_BITS - 1));
 
-  reg f_loaded = 1'b0;
+  reg f_loaded = 1'b0;  // a span has been loaded
   reg signed [F_BITS-1:0] f_exact;
   reg signed [NORMAL_BITS-1:0] f_step;
   reg [F_STEP_BITS-1:0] f_k;
@@ -25,9 +28,11 @@
     end
   end
 
-  // span_walker's property a_advance: one step fewer than the length, which has F_STEP_BITS bits.
+  // Assumed: a span has one step less than pixels, and its length has F_STEP_BITS bits. span_walker
+  // guarantees this (its properties a_advance and a_load).
   always @(*) assume (!(f_loaded && advance && !load) || f_k < (1 << F_STEP_BITS) - 2);
 
+  // The exact value one step ago.
   wire signed [F_BITS-1:0] f_before = stepped ? f_exact - f_step : 0;
   wire f_before_in_format = f_before >= F_MIN && f_before <= F_MAX;
   wire f_in_format = f_exact >= F_MIN && f_exact <= F_MAX;
@@ -41,7 +46,7 @@
   end
 
 `ifndef F_BROKEN
-  // ---- invariants that make these inductive ----
+  // ---- invariants that make the properties inductive ----
   wire signed [F_BITS-1:0] f_bound = $signed({1'b0, f_k} + 1'b1) <<< (NORMAL_BITS - 1);
   always @(*) begin
     if (f_loaded) begin

@@ -1,10 +1,13 @@
-// Properties of phong_pipeline, at the end of its text, with the datapath cut away: any colour
-// comes. Spans at one port are pixels at the other, in order, and the first comes after a constant
-// time. That the parts do this is proven of them without a bound; this is about their wiring.
+// SPDX-License-Identifier: MIT
+// Properties of phong_pipeline, inserted before its `endmodule`. The datapath is cut away: any
+// colour may come out of it.
+// Spans at one port are pixels at the other, in order; the first pixel comes after a constant time.
+// That the modules do their part is proven of each without a bound; these properties are about the
+// wiring.
 
   localparam F_PIXEL_BITS = 2 * COORDINATE_BITS + 3 * COLOUR_BITS;
-  localparam F_FIRST = `PHONG_PIXEL_LATENCY + 3;
-  localparam F_WORD = `PHONG_NORMAL_BITS;  // of a component in span_values
+  localparam F_FIRST = `PHONG_PIXEL_LATENCY + 3;  // cycles from a span to its first pixel
+  localparam F_WORD = `PHONG_NORMAL_BITS;         // of a component in span_values
   localparam F_BITS = COORDINATE_BITS + 4;
   localparam F_PLACE_BITS = 2 * COORDINATE_BITS + 1;
   localparam F_WIDE = F_WORD + COORDINATE_BITS + 2;
@@ -19,14 +22,15 @@
   wire f_leaves = m_axis_tvalid & m_axis_tready;
   wire [COORDINATE_BITS:0] f_pixels = span_length == 0 ? 1 : span_length;
 
-  // ---- pixels owed, and one of them, of any span, that is followed ----
-  reg [F_BITS-1:0] f_owed;  // spans that would count it over do not come
+  // ---- pixels owed: accepted with a span, not yet at the output; any one of them is followed ----
+  // Assumed: no span comes that would let the count f_owed overflow.
+  reg [F_BITS-1:0] f_owed;
   always @(*) if (f_past) assume (!f_takes || !f_owed[F_BITS-1]);
-  (* anyconst *) wire [COORDINATE_BITS:0] f_k;  // its number in the span
+  (* anyconst *) wire [COORDINATE_BITS:0] f_k;  // number of the followed pixel in its span
   (* anyseq *) wire f_pick;
   reg f_followed = 1'b0;
-  reg [F_BITS-1:0] f_ahead;
-  reg [F_PLACE_BITS-1:0] f_place;
+  reg [F_BITS-1:0] f_ahead;        // pixels that leave before the followed one
+  reg [F_PLACE_BITS-1:0] f_place;  // {last, y, x} of the followed one
 
   always @(posedge clk) begin
     f_owed <= f_owed + (f_takes ? f_pixels : 0) - f_leaves;
@@ -48,11 +52,12 @@
 
   // ---- exact components ----
   reg f_active;
-  reg [COORDINATE_BITS:0] f_left;  // pixels of the span that have not gone in
-  reg f_bad, f_flag;
+  reg [COORDINATE_BITS:0] f_left;  // pixels of the span that have not left the walker
+  reg f_bad, f_flag;               // the span is illegal by its x or length; illegal_span is due
   reg signed [F_WIDE-1:0] f_x, f_y, f_z;
   reg signed [F_WORD-1:0] f_step_x, f_step_y, f_step_z;
-  // the normal at the interpolators, and the flag PHONG_ZERO_NORMAL_LATENCY clocks later
+  // The normal at the interpolators is zero. Its flag is due PHONG_ZERO_NORMAL_LATENCY cycles
+  // later.
   wire f_zero = pixel_valid && f_x[F_WORD-1:0] == 0 && f_y[F_WORD-1:0] == 0 &&
       f_z[F_WORD-1:0] == 0;
   reg [`PHONG_ZERO_NORMAL_LATENCY-1:0] f_zeros;
@@ -80,11 +85,11 @@
   end
 
   // ---- time ----
-  reg f_timed = 1'b0;  // a span was taken when nothing was owed, f_time clocks ago
+  reg f_timed = 1'b0;  // f_time cycles ago a span was accepted while no pixel was owed
   reg [7:0] f_time;
-  reg [7:0] f_flow;  // clocks in a row with a span offered and the output ready
-  reg f_single;  // since reset all spans have one pixel, and the output was ready
-  reg [2:0] f_run;  // pixels that left in a row
+  reg [7:0] f_flow;    // cycles in a row with a span offered and the output ready
+  reg f_single;        // since reset all spans had one pixel and the output was ready
+  reg [2:0] f_run;     // pixels that left in successive cycles
   reg f_stalled;
   reg [F_PIXEL_BITS:0] f_out;
 
@@ -101,7 +106,7 @@
   end
 
 `ifdef F_COVER
-  // What is to be shown possible is shown for one way to do it, which spares the solver a search.
+  // A cover statement needs one example; these assumptions give it, and shorten the search.
   always @(*) if (f_past) assume (!reset && f_single && s_axis_tvalid && m_axis_tready);
 `endif
 

@@ -1,16 +1,18 @@
-// Properties of pixel_fifo, at the end of its text. Any pixel may be followed, so what holds for it
-// holds for all: it leaves behind exactly those that were there before it, with the colour that was
-// at the inputs LATENCY clocks after it entered. Nothing is said about the datapath.
-// Uses these names inside: in_flight, place_slot, colour_slot, read_slot, credits, filled, and the
-// two memories.
+// SPDX-License-Identifier: MIT
+// Properties of pixel_fifo, inserted before its `endmodule`.
+// Any one pixel may be followed, so what holds for the followed pixel holds for all: exactly the
+// pixels that entered before it leave before it, and its colour is the one that was at the inputs
+// LATENCY cycles after it entered. The datapath is no part of this.
+// Signals of the module in use: in_flight, place_slot, colour_slot, read_slot, credits, filled, and
+// the two memories.
 
   localparam F_BITS = COUNT_BITS + 1;
   localparam F_AGE_BITS = $clog2(LATENCY + 2);
   localparam [F_BITS-1:0] F_SLOTS = SLOTS;
-  localparam [F_AGE_BITS-1:0] F_SHOWN = LATENCY + 1;  // age at which it can be at the output
+  localparam [F_AGE_BITS-1:0] F_SHOWN = LATENCY + 1;  // least age at the output
   localparam F_PLACE_BITS = 2 * COORDINATE_BITS + 1;
 
-  // ---- the world: reset first, pixels only with credit (span_walker's property a_credit) ----
+  // ---- assumed: reset comes first, and pixels only with credit (a_credit of span_walker) ----
   reg f_past = 1'b0;
   always @(posedge clk) f_past <= 1'b1;
   always @(*) begin
@@ -18,10 +20,10 @@
     assume (!pixel_valid || credit);
   end
 
-  // ---- counts at the ports, and how many had entered before the pixel at each stage ----
-  reg [F_BITS-1:0] f_inside;   // pixels in the module
-  reg [F_BITS-1:0] f_entered;  // counts round
-  reg [F_BITS*LATENCY-1:0] f_before;
+  // ---- counts at the ports; how many pixels entered before the one at each pipeline stage ----
+  reg [F_BITS-1:0] f_inside;          // pixels in the module
+  reg [F_BITS-1:0] f_entered;         // pixels that have entered, modulo 2^F_BITS
+  reg [F_BITS*LATENCY-1:0] f_before;  // f_entered of the last LATENCY cycles
   wire f_leaves = out_valid & out_ready;
   wire [F_BITS-1:0] f_completed = f_before[F_BITS*(LATENCY-1)+:F_BITS];
   wire [F_BITS-1:0] f_filled = filled;
@@ -40,14 +42,14 @@
     end
   end
 
-  // ---- the pixel that is followed: any one, once ----
+  // ---- the followed pixel: any one, once ----
   (* anyseq *) wire f_pick;
   reg f_followed = 1'b0;
-  reg [F_BITS-1:0] f_ahead;  // pixels that leave before it
-  reg [F_AGE_BITS-1:0] f_age;  // clocks since it entered, up to F_SHOWN
-  reg [F_BITS-1:0] f_number;
+  reg [F_BITS-1:0] f_ahead;        // pixels that leave before it
+  reg [F_AGE_BITS-1:0] f_age;      // cycles since it entered, saturated at F_SHOWN
+  reg [F_BITS-1:0] f_number;       // f_entered when it entered
   reg [SLOT_BITS-1:0] f_slot;
-  reg [F_PLACE_BITS-1:0] f_place;
+  reg [F_PLACE_BITS-1:0] f_place;  // {last, y, x}
   reg [3*COLOUR_BITS-1:0] f_colour;
 
   always @(posedge clk) begin
@@ -66,7 +68,7 @@
     end
   end
 
-  // ---- what was a clock ago ----
+  // ---- the previous cycle ----
   reg f_stalled, f_was_ready;
   reg [F_PLACE_BITS+3*COLOUR_BITS-1:0] f_out;
   always @(posedge clk) begin
@@ -94,12 +96,12 @@
   end
 
 `ifndef F_BROKEN
-  // ---- invariants that make these inductive ----
+  // ---- invariants that make the properties inductive ----
   function [SLOT_BITS:0] f_distance(input [SLOT_BITS-1:0] from, input [SLOT_BITS-1:0] to);
     f_distance = to >= from ? to - from : to + SLOTS - from;
   endfunction
 
-  wire [F_BITS-1:0] f_position = f_number - f_popped;  // among the slots; -1: at the output
+  wire [F_BITS-1:0] f_position = f_number - f_popped;  // in the queue of slots; -1: at the output
   wire f_at_output = &f_position;
   wire f_has_colour = f_age >= LATENCY;
 
@@ -125,7 +127,7 @@
     end
   end
 
-  // One bit a stage, since a label may stand only once.
+  // One bit per pipeline stage, since the label of an assertion must be unique.
   wire [LATENCY-1:0] f_link, f_younger, f_older, f_stage;
   genvar f_i;
   generate
@@ -133,7 +135,7 @@
       localparam [F_BITS-1:0] F_YOUNGER = f_i + 1;
       localparam [F_BITS-1:0] F_OLDER = LATENCY - 1 - f_i;
       wire [F_BITS-1:0] f_mine = f_before[F_BITS*f_i+:F_BITS];
-      wire [F_BITS-1:0] f_next;  // of the pixel that follows the one here
+      wire [F_BITS-1:0] f_next;  // of the pixel behind the one in this stage
       if (f_i == 0) assign f_next = f_entered;
       else assign f_next = f_before[F_BITS*(f_i-1)+:F_BITS];
       assign f_link[f_i] = f_mine + in_flight[f_i] == f_next;

@@ -1,4 +1,5 @@
-"""What is proven, at which size, and which broken design must fail it."""
+# SPDX-License-Identifier: MIT
+"""The proofs: claims about modules, their sizes, and the broken designs that must fail them."""
 
 from __future__ import annotations
 
@@ -8,10 +9,10 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class BrokenDesign:
-    """A broken design: the one place in rtl/`module`.v where `old` stands reads `new`.
+    """A broken design: in `module`, the text `old`, which occurs once, is replaced by `new`.
 
-    `breaks`: the property that must be reported as failed within `depth` clocks from reset, the
-    first `skip` of which are not looked at.
+    breaks: the property that must fail. depth: number of cycles from reset within which the
+    property must fail. skip: number of first cycles that are not checked.
     """
 
     module: str
@@ -24,12 +25,17 @@ class BrokenDesign:
 
 @dataclass(frozen=True)
 class Proof:
-    """A claim about module `top`, whose properties stand in sim/formal/<top>.vh, or about several
-    modules side by side in sim/formal/<top>.v.
+    """A claim about the module `top`.
 
-    mode: "prove" (k-induction, no bound), "bmc" (the first `depth` clocks), "cover" (reachable), or
-    "structure" (of the flattened netlist: `script` is Yosys's, and fails if the claim does).
-    parameters: of `top`. latency: of the pixel, in place of the real one; 0: the real one.
+    The properties are in sim/formal/<top>.vh. If sim/formal/<top>.v exists, it is the top level and
+    compares several modules.
+    mode: "prove" (k-induction, unbounded), "bmc" (bounded: the first `depth` cycles), "cover"
+    (the state is reachable) or "structure" (a Yosys `script` on the flattened netlist, which fails
+    if the claim is wrong).
+    size: of the proven design, for the table.
+    parameters: of `top`.
+    latency: value of PHONG_PIXEL_LATENCY, in cycles; 0 for the real one.
+    fast: whether the tests run the proof; `make formal` runs all proofs.
     """
 
     name: str
@@ -45,7 +51,8 @@ class Proof:
     broken_designs: tuple[BrokenDesign, ...] = ()
 
 
-_NARROW = {"COORDINATE_BITS": 1, "COLOUR_BITS": 1}  # data are only carried
+#: Narrow data words: the FIFO only stores data, so that their width does not matter.
+_NARROW = {"COORDINATE_BITS": 1, "COLOUR_BITS": 1}
 _FIFO = "no pixel lost, repeated, reordered; stable while stalled; no overflow; constant latency"
 _FIFO_BROKEN = (
     BrokenDesign(
@@ -121,11 +128,12 @@ _PIPELINE_BROKEN = (
     BrokenDesign("phong_pipeline", ".span_y(span_y),", ".span_y(span_x),", "a_order_and_place"),
 )
 
-# Clocked cells cut away, what is left between two ports is logic.
+#: Removes all clocked cells; a path between two ports is then combinational logic.
 _CUT = "delete t:$dff t:$sdff t:$dffe t:$sdffe t:$sdffce t:$mem_v2 t:$memrd_v2"
 
 
 def _no_path(source: str, target: str) -> str:
+    """Yosys commands that fail if there is combinational logic from `source` to `target`."""
     return (
         f"{_CUT}; select -assert-any i:{source}; select -assert-any o:{target}; "
         f"select -set cone o:{target} %ci*; select -assert-none @cone i:{source} %i"

@@ -1,6 +1,8 @@
-"""bitwuzla's command line, which its wheel does not bring: SMT-LIB from stdin, answers to stdout.
+# SPDX-License-Identifier: MIT
+"""Command line of bitwuzla, which its wheel does not include: SMT-LIB on stdin, answers on stdout.
 
-SymbiYosys starts this as `bitwuzla --lang smt2`, and asks `--help` whether it knows that option.
+SymbiYosys runs this program as `bitwuzla --lang smt2`. It first checks with `--help` that the
+option exists.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ import bitwuzla
 
 
 def commands(lines: Iterable[str]) -> Iterator[str]:
-    """The commands in `lines`, each as soon as its last parenthesis is there."""
+    """Yield the SMT-LIB commands in `lines`, each as soon as its parentheses are balanced."""
     text, depth = "", 0
     for line in lines:
         bare = line.split(";")[0] if "|" not in line else line
@@ -26,7 +28,7 @@ def commands(lines: Iterable[str]) -> Iterator[str]:
 
 
 def main() -> int:
-    """Answer until `(exit)` or the end of input."""
+    """Execute commands until `(exit)` or the end of input; returns the exit code."""
     if "--help" in sys.argv:
         print("--lang <smt2>")
         return 0
@@ -38,7 +40,7 @@ def main() -> int:
         word = command[1:].split(None, 1)[0].rstrip(")")
         if word == "exit":
             break
-        if word in ("push", "pop"):  # the parser would count levels by itself
+        if word in ("push", "pop"):  # on the solver itself: the parser keeps a count of its own
             levels = int(command[1:-1].split()[1]) if " " in command else 1
             getattr(parser.bitwuzla(), word)(levels)
             continue

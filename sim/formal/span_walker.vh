@@ -1,6 +1,8 @@
-// Properties of span_walker, at the end of its text: a span is exactly its pixels, one whenever
-// there is credit, and the next span starts with no clock between.
-// Uses these names inside: busy, at_end, walking, next_ends, remaining, last, beyond.
+// SPDX-License-Identifier: MIT
+// Properties of span_walker, inserted before its `endmodule`.
+// A span becomes exactly its pixels, one in every cycle with credit, and the next span starts
+// without a gap.
+// Signals of the module in use: busy, at_end, walking, next_ends, remaining, last, beyond.
 
   localparam F_BITS = COORDINATE_BITS + 2;
   localparam [F_BITS-1:0] F_WIDTH = 1 << COORDINATE_BITS;
@@ -10,15 +12,16 @@
   always @(*) if (!f_past) assume (reset);
 
   // ---- the specification ----
-  reg f_active;  // a span is at work
-  reg [F_BITS-1:0] f_left;  // its pixels that have not left; an empty span has one, and is flagged
+  reg f_active;  // a span is active
+  // Its pixels that have not left. An empty span has one, and is flagged.
+  reg [F_BITS-1:0] f_left;
   reg [COORDINATE_BITS-1:0] f_x, f_y;
   reg [MATERIAL_BITS-1:0] f_material;
   reg f_last;
-  reg f_bad;  // it is empty or leaves the counter
-  reg f_flag;  // the last pixel of an illegal span left a clock ago
+  reg f_bad;   // the span is empty, or its x leaves the coordinates
+  reg f_flag;  // the last pixel of an illegal span left one cycle ago
   wire f_final = f_active & credit & (f_left == 1);
-  wire f_free = !f_active | (f_left == 1);  // a span may come in with the next credit
+  wire f_free = !f_active | (f_left == 1);  // a span is accepted with the next credit
   wire f_takes = span_valid & span_ready;
 
   always @(posedge clk) begin
@@ -56,13 +59,13 @@
     end
   end
 
-  // Three spans in a row, of one, two and one pixels, are four pixels in four clocks.
+  // Three spans of one pixel accepted in successive cycles, and a pixel in the next one.
   reg [2:0] f_taken = 3'b000;
   always @(posedge clk) f_taken <= {f_taken[1:0], f_takes & (span_length == 1)};
   always @(*) c_back_to_back : cover (f_past && &f_taken && pixel_valid && !reset);
 
 `ifndef F_BROKEN
-  // ---- invariants that make these inductive ----
+  // ---- invariants that make the properties inductive ----
   always @(*) begin
     if (f_past) begin
       i_busy : assert (busy == f_active && at_end == f_free && walking == !at_end);
@@ -70,7 +73,7 @@
         i_left : assert (f_left != 0 && next_ends == (f_left == 2));
         i_remaining : assert (f_left == 1 || remaining == f_left - 1'b1);
         i_last : assert (last == f_last);
-        // What the counter has seen, and what it will see.
+        // The wraps of the counter so far, and those to come.
         i_bad : assert (f_bad == (beyond != 0 || pixel_x + f_left > F_WIDTH));
         i_length : assert (f_left < 2 * F_WIDTH && (beyond == 0 || f_bad));
         i_beyond : assert (&beyond ? f_left == 1 : {1'b0, beyond, pixel_x} + f_left < 3 * F_WIDTH);

@@ -1,4 +1,5 @@
-"""The stability cases through the RTL: a row of the table for each, with all that went wrong."""
+# SPDX-License-Identifier: MIT
+"""Corner cases through the RTL: one row of the table per case, with all failures."""
 
 from __future__ import annotations
 
@@ -12,27 +13,32 @@ from phong75.model.analysis import error_budget, metrics
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import Frame
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
+from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import illegal_spans
 from phong75.model.studies import corner_cases
 from phong75.model.studies.corner_cases import Case
+from phong75.model.studies.random_frames import random_frame
 from phong75.sim.build import Bench
 from phong75.sim.frame.run_frame import Job, SimResult, simulate_jobs
 
-#: Chances of 256 that a span is not offered, or a pixel not taken, in a clock of the long run.
+#: Probabilities, in 1/256 per cycle, that the long run offers no span or takes no pixel.
 CHANCES = (0, 16, 64, 160)
 
-#: Spans of one frame of the long run.
+#: Number of spans per frame of the long run.
 PIECE = 50_000
 
-#: Seed of what all registers hold at power-up in the second run of every case.
+#: Seed of the random register contents at power-up, for the second run of every case.
 POWER_UP = 75
 
 
 @dataclass
 class Row:
-    """A line of the table. max_lsb, bound_lsb: None where there is no shading. mismatches: pixels
-    of RTL and model that differ. failures: a line each, empty if all is as expected."""
+    """One row of the table.
+
+    max_lsb, bound_lsb: largest error and its derived bound, LSB of a colour code; None if the case
+    shades nothing. mismatches: number of pixels in which RTL and twin differ. failures: one message
+    per failure.
+    """
 
     case: str
     extreme: str
@@ -45,47 +51,56 @@ class Row:
     failures: list[str] = field(default_factory=list)
 
     def as_dict(self) -> dict:
-        """For JSON."""
+        """The row as a dict for JSON, with its verdict: "ok" or "FAILED"."""
         return asdict(self) | {"verdict": "FAILED" if self.failures else "ok"}
 
 
 def judge(case: Case, results: list[SimResult], config: Config = DEFAULT) -> Row:
-    """The row of `case`, whose frame gave `results`: the first counts, the others must be equal."""
+    """Compare the simulated `results` of `case` with the twin and with the error bound.
+
+    All results are compared with the twin. Counters, the error and the case's own check are taken
+    from the first result.
+    """
     frame, first = case.frame, results[0]
     expected = twin.render(frame, config)
-    said, mismatches = [], 0
+    failures, mismatches = [], 0
     for result in results:
         compared = metrics.compare(expected, result.pixels)
         mismatches += compared.mismatches
         if not result.complete:
-            said.append(f"no pixel came any more after {len(result.pixels.x)}")
+            failures.append(f"the pixels stop after {len(result.pixels.x)}")
         if result.extra_pixels:
-            said.append(f"{result.extra_pixels} pixels after the last")
+            failures.append(f"{result.extra_pixels} pixels after the last one")
         if compared.mismatches:
-            said.append(f"{compared.mismatches} pixels of RTL and model differ: {compared.first}")
+            failures.append(
+                f"{compared.mismatches} pixels of RTL and model differ: {compared.first}"
+            )
     flagged, zeros = first.zero_normals, twin.zero_normals(frame, config)
     if flagged != zeros:
-        said.append(f"{flagged} zero vectors flagged, there are {zeros}")
+        failures.append(f"{flagged} zero vectors flagged, expected {zeros}")
     illegal = int(illegal_spans(frame, config).sum())
     if first.illegal_spans != illegal:
-        said.append(f"{first.illegal_spans} illegal spans flagged, there are {illegal}")
+        failures.append(f"{first.illegal_spans} illegal spans flagged, expected {illegal}")
     if case.full_rate and first.stall_cycles:
-        said.append(f"{first.stall_cycles} clocks without a pixel")
+        failures.append(f"{first.stall_cycles} cycles without a pixel")
     bound = float(error_budget.bound_lsb(frame, config))
     worst = 0.0
     if len(first.pixels.x) == len(expected.x):
         worst = float(corner_cases.errors(frame, first.pixels.rgb).max(initial=0))
-        said += case.check(frame, first.pixels)
+        failures += case.check(frame, first.pixels)
     if worst > bound:
-        said.append(f"the largest error is {worst:.4f} LSB, the bound {bound:.4f}")
+        failures.append(f"the largest error is {worst:.4f} LSB, the bound {bound:.4f}")
     return Row(
         case.name, case.extreme, case.expected, len(first.pixels.x), worst, bound, mismatches,
-        flagged, said,
+        flagged, failures,
     )  # fmt: skip
 
 
 def run_cases(cases: list[Case], bench: Bench | None = None) -> list[Row]:
-    """All `cases` in one simulation, and once more with random contents of all registers."""
+    """Simulate all `cases` twice, with zeros and with random register contents at power-up.
+
+    Raises BuildError, SimulationError.
+    """
     runs = [
         simulate_jobs([Job(case.frame) for case in cases], bench=bench, power_up=power_up)
         for power_up in (None, POWER_UP)
@@ -95,46 +110,49 @@ def run_cases(cases: list[Case], bench: Bench | None = None) -> list[Row]:
 
 
 def results(cases: list[Case]) -> list[SimResult]:
-    """What the RTL does with `cases`, in one simulation."""
+    """Simulate `cases` once. Raises BuildError, SimulationError."""
     return simulate_jobs([Job(case.frame) for case in cases])
 
 
 def scene_case(name: str, size: tuple[int, int] | None = None) -> Case:
-    """A bundled scene as a case."""
+    """A bundled scene as a case. size: (width, height) in pixels, else the scene's own."""
     frame = front_end(load_scene(name, size)).frame
     return Case(
         f"{name} {frame.width}×{frame.height}",
         f"a frame of {frame.width}×{frame.height} pixels in {len(frame.spans)} spans",
-        "every dot once, within the bound, a pixel every clock",
+        "every pixel once, within the bound, one pixel per cycle",
         frame,
         full_rate=True,
     )
 
 
 def shared_edges(meshes: int, progress: Callable[[float], None] | None = None) -> Row:
-    """The row of `meshes` random triangulations: no gap, no dot twice."""
-    said = corner_cases.shared_edges(meshes, progress=progress)
-    failures = [
-        f"{said[what]} dots {words}"
-        for what, words in (("gaps", "missing"), ("doubles", "drawn twice"), ("outside", "outside"))
-        if said[what]
-    ]
+    """The row of `meshes` random triangulations: no gap, no pixel twice (model only)."""
+    counts = corner_cases.shared_edges(meshes, progress=progress)
+    faults = (("gaps", "missing"), ("doubles", "drawn twice"), ("outside", "outside"))
+    failures = [f"{counts[key]} pixels {fault}" for key, fault in faults if counts[key]]
     return Row(
         "shared edges",
-        f"{said['meshes']} random triangulations of rectangles, {said['triangles']} triangles",
-        "every dot of each rectangle once, no other",
-        said["dots"], None, None, None, None, failures,
+        f"{counts['meshes']} random triangulations of rectangles, {counts['triangles']} triangles",
+        "every pixel of each rectangle once, no other pixel",
+        counts["pixels"], None, None, None, None, failures,
     )  # fmt: skip
 
 
 def long_run(spans: int, seed: int = 75) -> Row:
-    """The row of `spans` random spans in frames of PIECE, each run whole under random pauses at
-    both ends, after a run that a reset breaks off at a random clock."""
+    """The row of `spans` random spans, in frames of PIECE spans.
+
+    Each frame is simulated twice with random pauses of spans and pixels: first up to a reset at a
+    random cycle, then to its end. Raises BuildError, SimulationError.
+    """
     rng = np.random.default_rng(seed)
     jobs = []
     for piece in range(-(-spans // PIECE)):
         count = min(PIECE, spans - piece * PIECE)
-        frame = corner_cases.random_frame(count, 5, [seed, piece])
+        frame = random_frame([seed, piece], count, 5, two_sided=bool(rng.random() < 0.5))
+        frame.materials.exponent[:] = DEFAULT.exponent.quantize(
+            rng.uniform(1, 128, DEFAULT.materials)
+        )
         for stop in (int(rng.integers(1, 2 * count)), 0):
             jobs.append(
                 Job(
@@ -146,25 +164,25 @@ def long_run(spans: int, seed: int = 75) -> Row:
     row = Row(
         "long run",
         f"{spans} spans with random pauses of spans and of pixels, {len(jobs) // 2} random resets",
-        "every pixel once, in order, whatever the pauses; a frame after a reset is whole",
+        "every pixel once, in order, under all pauses; a frame after a reset is complete",
         0, 0.0, 0.0, 0, 0,
     )  # fmt: skip
-    for (broken_off, _), (whole, job) in zip(
+    for (interrupted, _), (complete, job) in zip(
         *[iter(zip(results, jobs, strict=True))] * 2, strict=True
     ):
-        row.failures += _prefix(broken_off, job.frame)
-        found = judge(Case(row.case, "", "", job.frame), [whole])
-        row.pixels += found.pixels
-        row.mismatches += found.mismatches
-        row.zero_normals += found.zero_normals
-        row.max_lsb = max(row.max_lsb, found.max_lsb)
-        row.bound_lsb = max(row.bound_lsb, found.bound_lsb)
-        row.failures += found.failures
+        row.failures += _prefix(interrupted, job.frame)
+        frame_row = judge(Case(row.case, "", "", job.frame), [complete])
+        row.pixels += frame_row.pixels
+        row.mismatches += frame_row.mismatches
+        row.zero_normals += frame_row.zero_normals
+        row.max_lsb = max(row.max_lsb, frame_row.max_lsb)
+        row.bound_lsb = max(row.bound_lsb, frame_row.bound_lsb)
+        row.failures += frame_row.failures
     return row
 
 
 def _prefix(result: SimResult, frame: Frame) -> list[str]:
-    """What came before a reset must be the beginning of what was to come."""
+    """Check that the pixels before a reset are the first pixels of `frame`, but not all."""
     want, count = twin.render(frame), len(result.pixels.x)
     want = twin.Pixels(want.x[:count], want.y[:count], want.rgb[:count], want.last[:count])
     differ = metrics.compare(want, result.pixels).mismatches

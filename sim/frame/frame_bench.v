@@ -1,14 +1,16 @@
-// frame_bench: whole frames through phong_pipeline. Spans come from a file and pixels go to a
-// file, so that no clock waits for Python; cocotb writes registers, starts and reads the counters.
+// SPDX-License-Identifier: MIT
+// frame_bench: testbench top level that runs whole frames through phong_pipeline.
+// Spans come from a file and pixels go to a file, so that no cycle involves Python. cocotb writes
+// the registers, starts a job and reads the counters.
 `default_nettype none
 `include "phong_config.vh"
 
 module frame_bench #(
     parameter ADDRESS_BITS = 1 + `PHONG_MATERIAL_BITS + `PHONG_WEIGHT_INDEX_BITS,
-    parameter WORD_BITS = 2 * `PHONG_COEFFICIENT_BITS + 1,
-    parameter SPAN_BITS = `PHONG_SPAN_BITS,
-    parameter PIXEL_BITS = 2 * `PHONG_COORDINATE_BITS + 3 * `PHONG_COLOUR_BITS,
-    parameter RECORD_BITS = `PHONG_RECORD_BITS
+    parameter WORD_BITS    = 2 * `PHONG_COEFFICIENT_BITS + 1,
+    parameter SPAN_BITS    = `PHONG_SPAN_BITS,
+    parameter PIXEL_BITS   = 2 * `PHONG_COORDINATE_BITS + 3 * `PHONG_COLOUR_BITS,
+    parameter RECORD_BITS  = `PHONG_RECORD_BITS
 ) (
     input wire clk,
     input wire reset,
@@ -16,32 +18,33 @@ module frame_bench #(
     // register writes
     input wire                    write_enable,
     input wire [ADDRESS_BITS-1:0] write_address,
-    input wire [   WORD_BITS-1:0] write_word,
+    input wire [WORD_BITS-1:0]    write_word,
 
-    // the job: files <job>.spans (records from byte `skip` on) and <job>.pixels
+    // a job: spans from the file <job>.spans, pixels to the file <job>.pixels
     input wire        start,
-    input wire [31:0] job,
-    input wire [31:0] skip,
-    input wire [31:0] spans,        // records in the file
-    input wire [31:0] pixels,       // pixels to wait for
-    input wire [31:0] stop_after,   // clocks, 0: never; to break off in the middle
-    input wire [ 7:0] idle_chance,  // of 256: no span offered in a clock
-    input wire [ 7:0] stall_chance, // of 256: no pixel taken in a clock
-    input wire [31:0] seed,
+    input wire [31:0] job,           // number of the job
+    input wire [31:0] skip,          // bytes of <job>.spans before the first record
+    input wire [31:0] spans,         // records in the file
+    input wire [31:0] pixels,        // pixels to wait for
+    input wire [31:0] stop_after,    // cycles after which the job is broken off; 0: never
+    input wire [7:0]  idle_chance,   // of 256: no span is offered in a cycle
+    input wire [7:0]  stall_chance,  // of 256: no pixel is taken in a cycle
+    input wire [31:0] seed,          // of idle and stall cycles
 
+    // state and counters of the job
     output reg        running,
     output reg        complete,       // all pixels came
     output reg [31:0] cycles,         // from the first span accepted to the last pixel taken
-    output reg [31:0] latency,        // from the first span accepted to the first pixel offered
+    output reg [31:0] latency,        // cycles from the first span accepted to the first pixel
     output reg [31:0] stall_cycles,   // of `cycles`, after the first pixel: no pixel was taken
-    output reg [31:0] pixel_count,
-    output reg [31:0] illegal_spans,
-    output reg [31:0] unsupported,    // of all jobs and register writes so far
+    output reg [31:0] pixel_count,    // pixels taken
+    output reg [31:0] illegal_spans,  // pulses of illegal_span
+    output reg [31:0] unsupported,    // pulses of unsupported, of all jobs and writes so far
     output reg [31:0] zero_normals,   // pixels whose normal was the zero vector
     output reg [31:0] extra_pixels    // pixels after the last one
 );
 
-  localparam PATIENCE = 100000;  // clocks without a pixel after which a job is given up
+  localparam PATIENCE = 100000;  // cycles without a pixel after which a job is given up
 
   reg s_valid, s_last;
   wire s_ready;
@@ -74,7 +77,7 @@ module frame_bench #(
   integer in_file, out_file, got;
   reg [RECORD_BITS-1:0] record;
   reg [31:0] spans_read, clocks, waited;
-  reg accepted;  // a span of this job was accepted
+  reg accepted;  // a span of this job has been accepted
   reg [31:0] random;
 
   initial begin
@@ -84,7 +87,7 @@ module frame_bench #(
     m_ready = 0;
   end
 
-  // Galois LFSR, x^32 + x^22 + x^2 + x + 1.
+  // Galois LFSR of the polynomial x^32 + x^22 + x^2 + x + 1.
   function [31:0] next_random(input [31:0] r);
     next_random = {1'b0, r[31:1]} ^ (r[0] ? 32'h80200003 : 32'h0);
   endfunction
@@ -133,7 +136,7 @@ module frame_bench #(
         end else s_valid <= 0;
       end
 
-      // ---- pixels out: two 32-bit words, {last, y, x, red, green, blue} ----
+      // ---- pixels out: {last, y, x, red, green, blue} in two 32-bit words ----
       if (take) begin
         $fwrite(out_file, "%u", {{63 - PIXEL_BITS{1'b0}}, m_last, m_data});
         pixel_count <= pixel_count_next;

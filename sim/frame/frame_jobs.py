@@ -1,4 +1,5 @@
-"""The cocotb test of whole-frame runs: does the jobs that `sim.run_frame` left in a file."""
+# SPDX-License-Identifier: MIT
+"""cocotb test that runs the whole-frame jobs written by `sim.frame.run_frame`."""
 
 from __future__ import annotations
 
@@ -15,16 +16,16 @@ from phong75.sim.frame.frame_tb import FrameTB
 
 @cocotb.test()
 async def frame_jobs(dut):
-    """Every job of jobs.json in turn; what the counters said goes to counters.json."""
+    """Run the jobs of jobs.json one after the other; write their counters to counters.json."""
     folder = Path(os.environ[environment.JOBS])
     tb = FrameTB(dut)
     await tb.reset()
-    said = []
+    results = []
     for job in json.loads((folder / "jobs.json").read_text()):
         if job.pop("reset_first"):
             await tb.reset()
         await tb.write(job.pop("writes"))
         begin = time.perf_counter()
         counters = await tb.run(**job)
-        said.append(counters | {"seconds": time.perf_counter() - begin})
-    (folder / "counters.json").write_text(json.dumps(said))
+        results.append(counters | {"seconds": time.perf_counter() - begin})
+    (folder / "counters.json").write_text(json.dumps(results))

@@ -1,4 +1,5 @@
-"""Which stage a wrong pixel comes from: the stages of its modules, one by one, against the twin."""
+# SPDX-License-Identifier: MIT
+"""Locates a wrong pixel: compares the stages of the pixel's modules with the twin, one by one."""
 
 from __future__ import annotations
 
@@ -15,9 +16,9 @@ from phong75.model.config import DEFAULT, TECHNIQUES, Config
 from phong75.model.frame import Frame
 from phong75.model.spans import read_spans, write_spans
 from phong75.model.twin.core.normalizer import normalizer
+from phong75.model.twin.core.phong_unit import interpolate
 from phong75.model.twin.core.shading_unit import shading_unit
 from phong75.model.twin.core.span_walker import span_walker
-from phong75.model.twin.phong_pipeline import interpolate
 from phong75.model.twin.techniques.intensity_code import intensity_code
 from phong75.sim import environment
 from phong75.sim.build import Bench
@@ -27,7 +28,10 @@ from phong75.sim.module.units import bench_source
 
 
 def _vectors(frame: Frame, pixel: int, config: Config):
-    """(module, input columns, expected stages) of the modules that shade pixel number `pixel`."""
+    """Yield (module, input columns, expected stages) of the modules that shade pixel `pixel`.
+
+    pixel: number of the pixel in the stream of `frame`.
+    """
     span, k, _, _, _ = span_walker(frame.spans, pixel, pixel + 1, config)
     normal, _ = interpolate(frame.spans, span, k, config)
     trace: dict = {}
@@ -46,7 +50,10 @@ def _vectors(frame: Frame, pixel: int, config: Config):
 
 @cocotb.test()
 async def locate_stage(dut):
-    """Run the pixel of where.json through one module; the first stage that differs is written."""
+    """Run the pixel of where.json through one module; write the first difference to result.json.
+
+    The result is a message, or null if all stages agree with the twin.
+    """
     folder = Path(os.environ[environment.VECTORS])
     where = json.loads((folder / "where.json").read_text())
     config = TECHNIQUES[where["technique"]]
@@ -62,14 +69,15 @@ async def locate_stage(dut):
             await tb.hold(**dict(zip(("half_x", "half_z"), half, strict=True)))
             await tb.write_table(frame)
         got = await tb.send(*inputs)
-        said = first_difference(module, inputs, expected, got)
-        (folder / "said.json").write_text(json.dumps(said))
+        message = first_difference(module, inputs, expected, got)
+        (folder / "result.json").write_text(json.dumps(message))
 
 
 def locate(frame: Frame, pixel: int, config: Config = DEFAULT, rtl: Path | None = None) -> str:
-    """One line that names the stage at which pixel number `pixel` of `frame` goes wrong in RTL.
+    """One line that names the first stage at which the RTL differs from the twin.
 
-    rtl: folder of the design. Builds benches if they are not there. Raises BuildError.
+    pixel: number of the wrong pixel in the stream of `frame`. rtl: folder of the design, None for
+    the project's own. Builds the testbenches of the modules if necessary. Raises BuildError.
     """
     (BUILD / "run").mkdir(parents=True, exist_ok=True)
     folder = Path(tempfile.mkdtemp(dir=BUILD / "run"))
@@ -84,13 +92,13 @@ def locate(frame: Frame, pixel: int, config: Config = DEFAULT, rtl: Path | None 
             bench = Bench(top, sources={f"{top}.v": text}, **({"rtl": rtl} if rtl else {}))
             handed = {environment.VECTORS: str(folder)}
             bench.run("phong75.sim.frame.locate", folder, extra_env=handed)
-            said = json.loads((folder / "said.json").read_text())
-            if said:
-                return said
-        others = "register_map" if phong else f"{config.technique}_unit"
+            message = json.loads((folder / "result.json").read_text())
+            if message:
+                return message
+        other = "register_map" if phong else f"{config.technique}_unit"
         return (
-            f"{' and '.join(modules)} agree with the twin on what is interpolated here: the "
-            f"difference is in span_walker, linear_interpolator, {others} or pixel_fifo"
+            f"{' and '.join(modules)} agree with the twin for this pixel's interpolated vector: "
+            f"the difference is in span_walker, linear_interpolator, {other} or pixel_fifo"
         )
     finally:
         shutil.rmtree(folder, ignore_errors=True)

@@ -1,4 +1,5 @@
-"""Whole frames through the RTL, from outside the simulator."""
+# SPDX-License-Identifier: MIT
+"""Runs whole frames through the RTL: builds the testbench, starts the simulator, reads results."""
 
 from __future__ import annotations
 
@@ -24,19 +25,22 @@ from phong75.sim.design import BUILD
 
 
 class SimulationError(Exception):
-    """The simulator did not come to its end; the message holds the end of its log."""
+    """The simulation failed; the message contains the end of its log."""
 
 
-@dataclass
+@dataclass(repr=False)
 class SimResult:
-    """What a frame did in simulation; cycles as counted there (see sim/frame_bench.v).
+    """Result of one simulated frame; sim/frame/frame_bench.v counts the cycles.
 
-    pixels: as they came. cycles: clocks from the first span accepted to the last pixel taken.
-    latency_cycles: to the first pixel offered. stall_cycles: of `cycles`, those after the first
-    pixel in which none was taken. illegal_spans, zero_normals: how often the pipeline flagged them.
-    extra_pixels: pixels after the last.
-    build_s, simulate_s: seconds. unsupported: spans and register writes that need what the build
-    leaves out.
+    pixels: the pixels, in the order of the stream.
+    complete: whether all expected pixels were taken.
+    cycles: clock cycles from the first accepted span to the last pixel taken.
+    latency_cycles: clock cycles from the first accepted span to the first pixel offered.
+    stall_cycles: cycles after the first pixel in which no pixel was taken.
+    illegal_spans, zero_normals: how often the pipeline raised these flags.
+    extra_pixels: number of pixels after the last expected one.
+    build_s, simulate_s: wall-clock time, seconds.
+    unsupported: number of spans and register writes that need a feature that this build leaves out.
     """
 
     pixels: Pixels
@@ -51,13 +55,16 @@ class SimResult:
     zero_normals: int = 0
     unsupported: int = 0
 
+    def __repr__(self) -> str:
+        return f"SimResult({self.pixels}, cycles: {self.cycles}, complete: {self.complete})"
+
 
 @dataclass
 class Job:
-    """A frame to run, and under which conditions (see `FrameTB.run`).
+    """A frame to simulate, and the conditions (see `FrameTB.run`).
 
-    spans_path: its file if there is one already. reset_first: reset before it. writes: (address,
-    word) of the register writes, if not those that the frame needs.
+    spans_path: the frame's span file, None to write one. reset_first: reset before the frame.
+    writes: register writes (address, word), None for those that the frame needs.
     """
 
     frame: Frame
@@ -71,7 +78,7 @@ class Job:
 
 
 def read_pixels(path: Path, config: Config) -> Pixels:
-    """The pixels of a file that the bench wrote: 64-bit words {last, y, x, red, green, blue}."""
+    """Read a pixel file of the testbench: 64-bit words {last, y, x, red, green, blue}."""
     words = np.fromfile(path, dtype="<u8")
     colour, place = config.colour_bits, config.coordinate_bits
 
@@ -84,7 +91,7 @@ def read_pixels(path: Path, config: Config) -> Pixels:
 
 
 def body_offset(path: Path) -> int:
-    """Where the records of a span file start: after its second line."""
+    """Offset in bytes of the records of a span file, which start after its second line."""
     with open(path, "rb") as file:
         file.readline()
         file.readline()
@@ -96,11 +103,11 @@ def simulate_jobs(
     waves: Path | None = None, power_up: int | None = None,
     progress: Callable[[str], None] = silent,
 ):  # fmt: skip
-    """Run `jobs` one after the other in one simulation. Returns a list of SimResult.
+    """Simulate `jobs` one after the other in one process. Returns a list of SimResult.
 
-    waves: file for a VCD, if `bench` was built with a trace. power_up: seed of random contents of
-    all registers at power-up, in place of zeros. progress: called with what a phase does, before
-    it. Raises BuildError, SimulationError.
+    bench: the testbench, by default frame_bench in `config`. waves: VCD file to write; `bench` must
+    be built with a trace. power_up: seed of random register contents at power-up, None for zeros.
+    progress: called with what a phase does, before it. Raises BuildError, SimulationError.
     """
     bench = bench or Bench("frame_bench", config)
     begin = time.perf_counter()
@@ -110,21 +117,21 @@ def simulate_jobs(
     (BUILD / "run").mkdir(parents=True, exist_ok=True)
     folder = Path(tempfile.mkdtemp(dir=BUILD / "run"))
     try:
-        described = []
+        descriptions = []
         for k, job in enumerate(jobs):
             path = folder / f"{k}.spans"
             if job.spans_path is None:
                 write_spans(path, job.frame, config)
             else:
                 path.symlink_to(job.spans_path.resolve())
-            described.append({
+            descriptions.append({
                 "job": k, "skip": body_offset(path), "spans": len(job.frame.spans),
                 "pixels": int(np.maximum(job.frame.spans["length"], 1).sum()),
                 "idle": job.idle, "stall": job.stall, "seed": job.seed,
                 "stop_after": job.stop_after, "reset_first": job.reset_first,
                 "writes": writes(job.frame, config) if job.writes is None else job.writes,
             })  # fmt: skip
-        (folder / "jobs.json").write_text(json.dumps(described))
+        (folder / "jobs.json").write_text(json.dumps(descriptions))
         try:
             arguments = ["--trace", str(waves.resolve())] if waves else []
             if power_up is not None:
@@ -133,13 +140,13 @@ def simulate_jobs(
                 "phong75.sim.frame.frame_jobs", folder, test_args=arguments,
                 extra_env={environment.JOBS: str(folder)},
             )  # fmt: skip
-            said = json.loads((folder / "counters.json").read_text())
+            counters = json.loads((folder / "counters.json").read_text())
         except (OSError, RuntimeError, SystemExit) as error:
             log = folder / "sim.log"
             tail = log.read_text()[-3000:] if log.is_file() else ""
             raise SimulationError(f"the simulation failed ({error}):\n{tail}") from error
         results = []
-        for k, c in enumerate(said):
+        for k, c in enumerate(counters):
             results.append(
                 SimResult(
                     read_pixels(folder / f"{k}.pixels", config), bool(c["complete"]), c["cycles"],
@@ -158,5 +165,5 @@ def simulate(
     spans_path, frame: Frame, config: Config = DEFAULT,
     progress: Callable[[str], None] = silent,
 ) -> SimResult:  # fmt: skip
-    """Run one frame whose span file is `spans_path`; the rest as for `simulate_jobs`."""
+    """Simulate one frame whose span file is `spans_path`. Raises BuildError, SimulationError."""
     return simulate_jobs([Job(frame, Path(spans_path))], config, progress=progress)[0]

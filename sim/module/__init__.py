@@ -1,1 +1,2 @@
-"""Single modules through the RTL."""
+# SPDX-License-Identifier: MIT
+"""Simulation of single modules: generated testbenches and cocotb testbench classes."""

@@ -1,5 +1,8 @@
-// control_bench: span_walker and pixel_fifo on their own, in sizes small enough to try everything.
-// Two FIFOs: one whose slots are exactly as many as its latency needs, and one clock more.
+// SPDX-License-Identifier: MIT
+// control_bench: testbench top level with span_walker and pixel_fifo side by side, in sizes small
+// enough for exhaustive tests.
+// There are two FIFOs: `fit` has exactly the slots that its latency needs; the latency of `over` is
+// one cycle longer, so that it needs one more bank.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
@@ -8,19 +11,20 @@ module control_bench #(
     parameter COORDINATE_BITS = 4,
     parameter MATERIAL_BITS   = 2,
     parameter COLOUR_BITS     = 3,
-    parameter LATENCY_FIT     = 12,
-    parameter LATENCY_OVER    = 13,
+    parameter LATENCY_FIT     = 12,  // cycles from place to colour: 16 slots
+    parameter LATENCY_OVER    = 13,  // 32 slots
     parameter PIXEL_BITS      = 2 * COORDINATE_BITS + 3 * COLOUR_BITS
 ) (
     input wire clk,
     input wire reset,
 
+    // ports of span_walker
     input  wire                       span_valid,
     output wire                       span_ready,
     input  wire [COORDINATE_BITS-1:0] span_x,
     input  wire [COORDINATE_BITS-1:0] span_y,
-    input  wire [  COORDINATE_BITS:0] span_length,
-    input  wire [  MATERIAL_BITS-1:0] span_material,
+    input  wire [COORDINATE_BITS:0]   span_length,
+    input  wire [MATERIAL_BITS-1:0]   span_material,
     input  wire                       span_last,
     output wire                       load,
     output wire                       advance,
@@ -29,16 +33,17 @@ module control_bench #(
     output wire                       pixel_valid,
     output wire [COORDINATE_BITS-1:0] pixel_x,
     output wire [COORDINATE_BITS-1:0] pixel_y,
-    output wire [  MATERIAL_BITS-1:0] pixel_material,
+    output wire [MATERIAL_BITS-1:0]   pixel_material,
     output wire                       pixel_last,
     output wire                       illegal_span,
 
-    // both FIFOs
+    // ports of both FIFOs: pixel_x, pixel_y, pixel_last
     input wire [COORDINATE_BITS-1:0] place_x,
     input wire [COORDINATE_BITS-1:0] place_y,
     input wire                       place_last,
 
-    output wire [           31:0] fit_latency,
+    // ports of the FIFO `fit`, and its LATENCY
+    output wire [31:0]            fit_latency,
     output wire                   fit_credit,
     input  wire                   fit_pixel_valid,
     input  wire [COLOUR_BITS-1:0] fit_red,
@@ -46,10 +51,11 @@ module control_bench #(
     input  wire [COLOUR_BITS-1:0] fit_blue,
     output wire                   fit_out_valid,
     input  wire                   fit_out_ready,
-    output wire [ PIXEL_BITS-1:0] fit_out_data,
+    output wire [PIXEL_BITS-1:0]  fit_out_data,
     output wire                   fit_out_last,
 
-    output wire [           31:0] over_latency,
+    // ports of the FIFO `over`, and its LATENCY
+    output wire [31:0]            over_latency,
     output wire                   over_credit,
     input  wire                   over_pixel_valid,
     input  wire [COLOUR_BITS-1:0] over_red,
@@ -57,7 +63,7 @@ module control_bench #(
     input  wire [COLOUR_BITS-1:0] over_blue,
     output wire                   over_out_valid,
     input  wire                   over_out_ready,
-    output wire [ PIXEL_BITS-1:0] over_out_data,
+    output wire [PIXEL_BITS-1:0]  over_out_data,
     output wire                   over_out_last
 );
 

@@ -1,4 +1,6 @@
-// pipeline_bench: phong_pipeline, with its latency for the testbench to read.
+// SPDX-License-Identifier: MIT
+// pipeline_bench: testbench top level with phong_pipeline and its latency. The ports are those of
+// phong_pipeline.
 `default_nettype none
 `include "phong_config.vh"
 `include "latency.vh"
@@ -13,19 +15,19 @@ module pipeline_bench #(
     input  wire                    reset,
     input  wire                    write_enable,
     input  wire [ADDRESS_BITS-1:0] write_address,
-    input  wire [   WORD_BITS-1:0] write_word,
+    input  wire [WORD_BITS-1:0]    write_word,
     input  wire                    s_axis_tvalid,
     output wire                    s_axis_tready,
-    input  wire [   SPAN_BITS-1:0] s_axis_tdata,
+    input  wire [SPAN_BITS-1:0]    s_axis_tdata,
     input  wire                    s_axis_tlast,
     output wire                    m_axis_tvalid,
     input  wire                    m_axis_tready,
-    output wire [  PIXEL_BITS-1:0] m_axis_tdata,
+    output wire [PIXEL_BITS-1:0]   m_axis_tdata,
     output wire                    m_axis_tlast,
     output wire                    illegal_span,
     output wire                    zero_normal,
     output wire                    unsupported,
-    output wire [            31:0] pixel_latency
+    output wire [31:0]             pixel_latency  // cycles, PHONG_PIXEL_LATENCY
 );
 
   assign pixel_latency = `PHONG_PIXEL_LATENCY;

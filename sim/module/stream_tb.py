@@ -1,8 +1,8 @@
-"""cocotb testbench pieces for AXI4-Stream: clock, reset, source, sink and scoreboard.
+# SPDX-License-Identifier: MIT
+"""cocotb testbench classes for AXI4-Stream: clock, reset, source, sink and scoreboard.
 
-Python is called twice a clock: inputs change at the falling edge, and everything is read when it
-has settled, as the rising edge after it will see it. For short runs; whole frames go through
-sim/frame_tb.py.
+Python runs twice per cycle: it changes inputs at the falling edge, and reads settled values, which
+are those at the next rising edge. This is for short runs; sim/frame/frame_tb.py runs whole frames.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from collections.abc import Iterator
 from cocotb.clock import Clock
 from cocotb.triggers import FallingEdge, ReadOnly
 
-#: When a source has nothing to offer, or a sink takes nothing.
+#: How often a source offers nothing, or a sink takes nothing.
 REGIMES = ("never", "sometimes", "mostly", "bursts")
 
 
 def pauses(regime: str, seed) -> Iterator[bool]:
-    """Whether to pause, clock by clock."""
+    """Whether to pause, for each cycle. regime: one of REGIMES."""
     rng = random.Random(f"{regime} {seed}")
     if regime == "bursts":
         pause = False
@@ -32,7 +32,7 @@ def pauses(regime: str, seed) -> Iterator[bool]:
 
 
 class Clocked:
-    """Owns clock and reset; `step` is one clock: drive, settle, observe."""
+    """Owns clock and reset. A subclass's `step` is one cycle: drive, settle, observe."""
 
     def __init__(self, dut):
         self.dut = dut
@@ -42,27 +42,27 @@ class Clocked:
         Clock(dut.clk, 10, unit="ns", impl="gpi").start()
 
     def drive(self, **values):
-        """Set inputs, those that change only."""
+        """Set input ports; ports that already have the value are skipped."""
         for name, value in values.items():
             if self._driven.get(name) != value:
                 self._driven[name] = value
                 getattr(self.dut, name).value = int(value)
 
     def read(self, name: str) -> int:
-        """A settled output."""
+        """The value of a settled output."""
         return int(getattr(self.dut, name).value)
 
     async def edge(self):
-        """To where inputs may change."""
+        """Wait for the falling edge, after which inputs may change."""
         await FallingEdge(self.dut.clk)
         self.clock += 1
 
     async def settle(self):
-        """To where everything may be read."""
+        """Wait until all signals have settled, so that they may be read."""
         await ReadOnly()
 
     async def reset(self, clocks: int = 2):
-        """Hold reset for `clocks` clocks."""
+        """Hold reset for `clocks` cycles."""
         await self.edge()
         self.drive(reset=1)
         for _ in range(clocks):
@@ -71,24 +71,28 @@ class Clocked:
 
 
 class Source:
-    """Offers words on <prefix>_tvalid/_tready/_tdata/_tlast; an offered word stays until taken."""
+    """Offers words on <prefix>_tvalid/_tready/_tdata/_tlast; an offered word stays until taken.
+
+    queue: (tdata, tlast) of the words to offer. idle: pauses. taken_at: cycle in which each word
+    was taken.
+    """
 
     def __init__(self, tb: Clocked, prefix: str):
         self.tb, self.prefix = tb, prefix
         self.queue: deque[tuple[int, int]] = deque()
         self.idle = pauses("never", 0)
         self.offered = False
-        self.taken_at: list[int] = []  # clock of each word
+        self.taken_at: list[int] = []
         tb.drive(**{f"{prefix}_tvalid": 0})
 
     def drop(self):
-        """Forget all words: the design is being reset."""
+        """Drop all words, because the design is reset."""
         self.queue.clear()
         self.offered = False
         self.taken_at.clear()
 
     def drive(self):
-        """Before the edge: offer the next word, or pause."""
+        """Offer the next word, or pause."""
         if not self.offered and self.queue and not next(self.idle):
             self.offered = True
             data, last = self.queue[0]
@@ -96,7 +100,7 @@ class Source:
         self.tb.drive(**{f"{self.prefix}_tvalid": self.offered})
 
     def observe(self):
-        """After settling: is the word taken?"""
+        """Check whether the offered word is taken."""
         if self.offered and self.tb.read(f"{self.prefix}_tready"):
             self.queue.popleft()
             self.offered = False
@@ -104,7 +108,11 @@ class Source:
 
 
 class Sink:
-    """Takes words, compares them with those expected, and watches that a waiting word is still."""
+    """Takes words and compares them with the expected ones; a waiting word must not change.
+
+    expected: (tdata, tlast) of the words to come. stall: pauses. taken_at: cycle in which each word
+    was taken. note: appended to the message of a failure.
+    """
 
     def __init__(self, tb: Clocked, prefix: str, module: str):
         self.tb, self.prefix, self.module = tb, prefix, module
@@ -115,21 +123,21 @@ class Sink:
         self.note = ""
 
     def drop(self):
-        """Forget what was expected: the design is being reset."""
+        """Drop all expected words, because the design is reset."""
         self.expected.clear()
         self.taken_at.clear()
         self.waiting = None
 
     def drive(self):
-        """Before the edge: ready or not."""
+        """Set or clear tready."""
         self.ready = not next(self.stall)
         self.tb.drive(**{f"{self.prefix}_tready": self.ready})
 
     def observe(self):
-        """After settling: take a word, compare it."""
+        """Take a word and compare it."""
         where = f"module {self.module}, clock {self.tb.clock}, word {len(self.taken_at)}"
         valid = self.tb.read(f"{self.prefix}_tvalid")
-        assert valid or not self.waiting, f"{where}: tvalid went away unanswered; {self.note}"
+        assert valid or not self.waiting, f"{where}: tvalid fell before tready; {self.note}"
         if not valid:
             return
         word = self.tb.read(f"{self.prefix}_tdata"), self.tb.read(f"{self.prefix}_tlast")
@@ -139,7 +147,7 @@ class Sink:
         )
         self.waiting = word
         if self.ready:
-            assert self.expected, f"{where}: {_show(word)} is left over; {self.note}"
+            assert self.expected, f"{where}: unexpected word {_show(word)}; {self.note}"
             want = self.expected.popleft()
             assert word == want, f"{where}: expected {_show(want)}, got {_show(word)}; {self.note}"
             self.taken_at.append(self.tb.clock)
@@ -151,7 +159,10 @@ def _show(word) -> str:
 
 
 class PipelineTB(Clocked):
-    """phong_pipeline between a source of spans and a sink of pixels."""
+    """phong_pipeline with a source of spans and a sink of pixels.
+
+    illegal_at, zero_at: cycles in which illegal_span and zero_normal were 1.
+    """
 
     def __init__(self, dut):
         super().__init__(dut)
@@ -162,7 +173,7 @@ class PipelineTB(Clocked):
         self.zero_at: list[int] = []
 
     async def reset(self, clocks: int = 2):
-        """Hold reset; nothing is offered or expected any more."""
+        """Hold reset for `clocks` cycles; drops all spans and expected pixels."""
         self.source.drop()
         self.sink.drop()
         self.illegal_at.clear()
@@ -174,7 +185,7 @@ class PipelineTB(Clocked):
         self.drive(reset=0)
 
     async def write(self, writes):
-        """Write (address, word) pairs through the register port, one a clock."""
+        """Write (address, word) pairs through the register port, one per cycle."""
         for address, word in writes:
             await self.edge()
             self.drive(write_enable=1, write_address=address, write_word=word)
@@ -183,7 +194,7 @@ class PipelineTB(Clocked):
         await self.edge()
 
     async def step(self):
-        """One clock."""
+        """Run one cycle."""
         await self.edge()
         self.source.drive()
         self.sink.drive()
@@ -196,14 +207,17 @@ class PipelineTB(Clocked):
             self.zero_at.append(self.clock)
 
     async def drain(self, patience: int = 2000, after: int = 300):
-        """Run until all that is expected came, and `after` clocks more: nothing is left over."""
+        """Run until all expected pixels came, then `after` more cycles, in which none may come.
+
+        patience: largest number of cycles without a pixel.
+        """
         quiet, last = 0, len(self.sink.taken_at)
         while self.source.queue or self.sink.expected:
             await self.step()
             quiet = 0 if len(self.sink.taken_at) > last else quiet + 1
             last = len(self.sink.taken_at)
             assert quiet < patience, (
-                f"module phong_pipeline, clock {self.clock}: no pixel for {quiet} clocks, "
+                f"module phong_pipeline, clock {self.clock}: no pixel for {quiet} cycles, "
                 f"{len(self.source.queue)} spans and {len(self.sink.expected)} pixels missing; "
                 f"{self.sink.note}"
             )

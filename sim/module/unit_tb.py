@@ -1,28 +1,23 @@
-"""cocotb testbench of the generated module benches: vectors through files, compared by stage."""
+# SPDX-License-Identifier: MIT
+"""cocotb testbench class of the benches of `units`: compares every stage with the twin."""
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
-
 import numpy as np
-from cocotb.clock import Clock
-from cocotb.triggers import ClockCycles, FallingEdge
+from cocotb.triggers import FallingEdge
 
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import Frame
 from phong75.model.registers import FIELDS, writes
-from phong75.sim import environment
 from phong75.sim.module.units import MODULES, lanes
-
-#: Only every so many vectors of `check` are sent: a slow simulator asks for it.
-THIN = int(os.environ.get(environment.THIN, "1"))
+from phong75.sim.module.vector_bench import THIN, VectorTB
 
 
 def first_difference(module: str, inputs, expected: dict, got: dict) -> str | None:
-    """One line on the first stage, in the order of the data, where `got` is not `expected`.
+    """A message about the first stage, in data order, where `got` differs from `expected`.
 
-    Both {stage: (int arrays)}. None if all is the same.
+    inputs: int arrays [n], one per input port. expected, got: {stage: int arrays [n]}. Returns None
+    if all stages are equal.
     """
     for stage, arrays in expected.items():
         for k, (want, have) in enumerate(zip(arrays, got[stage], strict=True)):
@@ -30,81 +25,68 @@ def first_difference(module: str, inputs, expected: dict, got: dict) -> str | No
             if len(bad):
                 i = int(bad[0])
                 names = MODULES[module].inputs
-                given = {name: int(column[i]) for name, column in zip(names, inputs, strict=True)}
+                vector = {name: int(column[i]) for name, column in zip(names, inputs, strict=True)}
                 return (
                     f"module {module}, stage {stage} (signal {k}): {len(bad)} of {len(have)} "
-                    f"vectors differ; first: inputs {given}, expected {int(want[i])}, "
+                    f"vectors differ; first: inputs {vector}, expected {int(want[i])}, "
                     f"got {int(have[i])}"
                 )
     return None
 
 
-class UnitTB:
-    """Sends vectors through one module, one a clock, and compares every stage with the twin."""
+class UnitTB(VectorTB):
+    """Sends vectors through one module, one per cycle, and compares every stage with the twin."""
 
     def __init__(self, dut, module: str):
-        self.dut, self.module = dut, module
-        self.folder = Path(os.environ[environment.VECTORS])
-        self.job = 0
-        self.latency: dict[str, int] = {}
-        dut.start.value = 0
+        super().__init__(dut)
+        self.module = module
         for port, _ in MODULES[module].held:
             getattr(dut, port).value = 0
-        Clock(dut.clk, 10, unit="ns", impl="gpi").start()
 
     async def hold(self, **values):
-        """Set held ports, and give them a clock to arrive."""
+        """Set held ports to `values`; one cycle later the module has them."""
         await FallingEdge(self.dut.clk)
         for port, value in values.items():
             getattr(self.dut, port).value = value
         await FallingEdge(self.dut.clk)
 
     async def write_table(self, frame: Frame, config: Config = DEFAULT):
-        """Write the material table of `frame`, decoded as rtl/register_map.v does it."""
+        """Write the material table of `frame`, decoded as in rtl/core/register_map.v."""
         kind = 1 << (config.material_bits + config.weight_index_bits)
-        has = [port for port, _ in MODULES[self.module].held]
+        ports = [port for port, _ in MODULES[self.module].held]
         for address, word in writes(frame, config):
             field = address & ((1 << config.weight_index_bits) - 1)
             to_table = not address & kind
             strobes = {"write_enable": to_table, "write_weight": to_table}
             for name, count in (("ambient", 3), ("diffuse", 3), ("exponent", 1)):
-                place = field - FIELDS[name]
-                hit = not to_table and 0 <= place < count
-                strobes[f"write_{name}"] = hit << place if hit else 0
-            strobes = {port: int(value) for port, value in strobes.items() if port in has}
+                channel = field - FIELDS[name]
+                hit = not to_table and 0 <= channel < count
+                strobes[f"write_{name}"] = hit << channel if hit else 0
+            strobes = {port: int(value) for port, value in strobes.items() if port in ports}
             await self.hold(write_address=address & (kind - 1), write_word=word, **strobes)
         await self.hold(**dict.fromkeys(strobes, 0))
 
     async def send(self, *inputs) -> dict[str, list[np.ndarray]]:
-        """Run the vectors `inputs` (int arrays of one length, one per input port).
+        """Send vectors; returns {stage: observed signals, int64[n] each}.
 
-        Returns the observed signals, {stage: [int64[n], ...]}, each at its stated latency.
+        inputs: int arrays [n], one per input port. Each signal is read at the latency that the
+        RTL states, so that row i belongs to vector i.
         """
-        dut, n = self.dut, len(inputs[0])
-        await FallingEdge(dut.clk)  # past the start, where `running` comes from unknown to 0
-        stacked = np.stack([np.asarray(i, np.int64) for i in inputs], axis=1)
-        stacked.astype(">i8").tofile(self.folder / f"{self.job}.in")
-        dut.job.value, dut.vectors.value = self.job, n
-        dut.start.value = 1
-        await FallingEdge(dut.running)
-        dut.start.value = 0
-        await ClockCycles(dut.clk, 2)
+        n = len(inputs[0])
         observed = lanes(self.module)
-        path = self.folder / f"{self.job}.out"
-        out = np.fromfile(path, "<i8").reshape(-1, len(observed))
-        path.unlink()
-        self.job += 1
+        rows = (await self.run(inputs)).reshape(-1, len(observed))
         stages: dict[str, list[np.ndarray]] = {}
         for k, lane in enumerate(observed):
-            latency = self.latency[lane.stage] = int(out[0, k])
-            first = 2 + latency  # one record of latencies, one clock to put the vector on
-            stages.setdefault(lane.stage, []).append(out[first : first + n, k])
+            latency = int(rows[0, k])
+            first = 2 + latency  # one row of latencies; one cycle until the first vector is applied
+            stages.setdefault(lane.stage, []).append(rows[first : first + n, k])
         return stages
 
     async def check(self, inputs, expected: dict, note: str = "", in_sequence: bool = False):
-        """Send `inputs`; every stage of `expected` {stage: (int arrays)} must come to the bit.
+        """Send `inputs`; every stage must equal `expected` bit for bit.
 
-        in_sequence: what comes of a vector depends on those before it.
+        expected: {stage: int arrays [n]}, in data order. note: appended to the message of a
+        failure. in_sequence: the module has state, so that vectors must stay in order.
         """
         if THIN > 1:
             some = slice(len(inputs[0]) // THIN) if in_sequence else slice(None, None, THIN)
@@ -117,7 +99,7 @@ class UnitTB:
         assert not missing, f"stages without expectation: {missing}"
 
     async def check_latency(self, quiet, active, stage: str):
-        """A single `active` vector among `quiet` ones shows at `stage` after its latency only."""
+        """Check the latency of `stage`: one `active` vector among `quiet` ones changes one row."""
         n = 400
         inputs = [np.full(n, q) for q in quiet]
         for column, value in zip(inputs, active, strict=True):

@@ -1,9 +1,10 @@
-"""Benches of single datapath modules, generated: vectors in from a file, every stage out to a file.
+# SPDX-License-Identifier: MIT
+"""Generated benches of single datapath modules: vectors from a file, signals of every stage to one.
 
-A `Unit` says what a bench holds. Its input words and its observed signals ("lanes") are 64 bits
-wide in the files whatever their width in the design, so no width is written here. Every signal of
-every stage is recorded each clock together with its latency in clocks as the RTL states it, so
-that a mismatch names the first stage that differs and a wrong latency is a mismatch.
+A `Module` describes the bench of one module. Input words and observed signals ("lanes") have 64
+bits in the files whatever their width in the design, so that no width is written here. Every signal
+of every stage is recorded in every cycle. The RTL states the latency of each signal, in cycles. So
+a mismatch names the first stage that differs, and a wrong latency is a mismatch.
 """
 
 from __future__ import annotations
@@ -11,13 +12,18 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from phong75.model.config import DEFAULT
+from phong75.sim.module.vector_bench import bench_text, known, write
+
+#: Cycles that a bench runs after the last vector: more than the latency of any module.
+TAIL = 256
 
 
 @dataclass(frozen=True)
 class Stage:
-    """Observed signals of a stage of the twin: `signals` valid `latency` clocks after the input.
+    """The observed signals of one stage of the twin.
 
-    A signal is a path below the module; "+" in front of it marks two's complement.
+    name: of the stage. signals: paths below the module; a leading "+" marks two's complement.
+    latency: cycles from the module's input to the signals, a Verilog expression.
     """
 
     name: str
@@ -27,7 +33,11 @@ class Stage:
 
 @dataclass(frozen=True)
 class Child:
-    """A module inside a module whose stages are observed too."""
+    """An instance inside a module whose stages are observed as well.
+
+    instance: path below the module. module: key of MODULES. latency: cycles from the module's input
+    to the instance's input, a Verilog expression.
+    """
 
     instance: str
     module: str
@@ -36,14 +46,20 @@ class Child:
 
 @dataclass(frozen=True)
 class Module:
-    """Input ports that vectors drive (in this order), ports held by cocotb, stages, children."""
+    """Description of the bench of one module.
+
+    inputs: input ports that the vectors drive, in this order.
+    stages: observed stages, in data order.
+    held: (port, width) of input ports that cocotb holds; width is a number or Verilog expression.
+    children: instances whose stages are observed before those of the module.
+    late: {input port: Verilog expression}: cycles by which the port's data must arrive later.
+    """
 
     inputs: tuple[str, ...]
     stages: tuple[Stage, ...]
     held: tuple[tuple[str, int | str], ...] = ()
     children: tuple[Child, ...] = ()
-    late: dict[str, str] = field(default_factory=dict)  # inputs wanted some clocks later
-    tests: str = "datapath"  # the file of tests/modules/ that tests it
+    late: dict[str, str] = field(default_factory=dict)
 
 
 L = "`PHONG_{}_LATENCY"
@@ -99,7 +115,6 @@ MODULES = {
             Stage("inverse_sqrt_quadratic.refine", ("line_p9",), _sum(1, ROM, MUL, 1, MUL, 1)),
             Stage("inverse_sqrt_quadratic.round", ("root",), L.format("INVERSE_SQRT_QUADRATIC")),
         ),
-        tests="methods",
     ),
     "newton_step": Module(
         ("x", "y"),
@@ -108,7 +123,6 @@ MODULES = {
             Stage("newton_step.error", ("+error_p7",), _sum(MUL, ROUND, MUL, 1)),
             Stage("newton_step.better", ("better",), L.format("NEWTON_STEP")),
         ),
-        tests="methods",
     ),
     "inverse_sqrt_iterated": Module(
         ("operand",),
@@ -118,7 +132,6 @@ MODULES = {
                 "inverse_sqrt_iterated.steps", ("root",), L.format("INVERSE_SQRT_ITERATED")
             ),
         ),
-        tests="methods",
     ),
     "unnormalized": Module(
         ("x", "y", "z"),
@@ -130,7 +143,6 @@ MODULES = {
             Stage("unnormalized.lit", ("lit",), L.format("UNNORMALIZED")),
         ),
         held=(("two_sided", 1),),
-        tests="methods",
     ),
     "normalizer": Module(
         ("x", "y", "z"),
@@ -211,7 +223,6 @@ MODULES = {
             Stage("specular_power_squaring.last", ("power",), L.format("SPECULAR_POWER_SQUARING")),
         ),
         late={"exponent": _sum(L.format("SPECULAR_COSINE"), -1)},
-        tests="methods",
     ),
     "specular_power_schlick": Module(
         ("versine", "exponent"),
@@ -226,12 +237,10 @@ MODULES = {
                 "specular_power_schlick.quotient", ("power",), L.format("SPECULAR_POWER_SCHLICK")
             ),
         ),
-        tests="methods",
     ),
     "quadratic_interpolator": Module(
         ("advance", "load", "start", "first", "second"),
         (Stage("quadratic_interpolator", ("+value",), "1"),),
-        tests="methods",
     ),
     "quadratic_normalizer": Module(
         ("z", "square", "cross_square"),
@@ -252,7 +261,6 @@ MODULES = {
             ),
         ),
         held=(("two_sided", 1),),
-        tests="methods",
     ),
     "specular_weight": Module(
         ("cosine", "material"),
@@ -268,11 +276,11 @@ MODULES = {
         ("unit_x", "unit_y", "unit_z", "cosine", "lit", "material"),
         (
             Stage(
-                "shading_unit.intensity",
+                "colour_channel.intensity",
                 tuple(f"gen_channel[{c}].u_channel.intensity_p5" for c in range(3)),
                 _sum(L.format("SHADING_UNIT"), -2),
             ),
-            Stage("shading_unit.code", ("red", "green", "blue"), L.format("SHADING_UNIT")),
+            Stage("colour_channel.code", ("red", "green", "blue"), L.format("SHADING_UNIT")),
         ),
         held=(
             ("half_x", "`PHONG_HALF_VECTOR_BITS"), ("half_z", "`PHONG_HALF_VECTOR_BITS"),
@@ -297,7 +305,7 @@ MODULES = {
 
 @dataclass(frozen=True)
 class Lane:
-    """One observed signal: the stage it belongs to, its expression, its latency."""
+    """One observed signal: its stage, its Verilog expression and its latency (an expression)."""
 
     stage: str
     signal: str
@@ -305,117 +313,56 @@ class Lane:
 
 
 def lanes(module: str, path: str = "dut.", latency: str = "0") -> list[Lane]:
-    """All observed signals of `module` and its children, in the order of the data."""
-    out = []
+    """All observed signals of `module` and of its children, in data order.
+
+    path: of the module in the bench. latency: cycles from the bench's input to the module's.
+    """
+    result = []
     for child in MODULES[module].children:
-        out += lanes(child.module, f"{path}{child.instance}.", _sum(latency, child.latency))
+        result += lanes(child.module, f"{path}{child.instance}.", _sum(latency, child.latency))
     for stage in MODULES[module].stages:
         for signal in stage.signals:
             signed = signal.startswith("+")
             name = path + signal.removeprefix("+")
-            out.append(
+            result.append(
                 Lane(
                     stage.name,
                     f"$signed({name})" if signed else name.replace("dut.MOST", path + "MOST"),
                     _sum(latency, stage.latency),
                 )
             )
-    return out
+    return result
 
 
-_BENCH = """\
-// {top}: generated by sim/units.py
-`default_nettype none
-`include "phong_config.vh"
-`include "latency.vh"
-
-module {top} (
-    input wire clk,
-{held_ports}
-    input wire        start,
-    input wire [31:0] job,      // vectors of <job>.in, signals to <job>.out
-    input wire [31:0] vectors,
-    output reg        running
-);
-
-  localparam INPUTS = {inputs};
-  localparam LANES = {lane_count};
-
-  reg [64*INPUTS-1:0] record, vector;
-  wire [64*LANES-1:0] signals, latencies;
-
-{wires}
-  {module}{parameters} dut (
-      .clk(clk){connections}
-  );
-
-{assigns}
-  reg [255:0] name;
-  reg [31:0] clocks;
-  integer in_file, out_file, got;
-  initial begin
-    running = 0;
-  end
-
-  always @(posedge clk) begin
-    if (!running & start) begin
-      $sformat(name, "%0d.in", job);
-      in_file = $fopen(name, "rb");
-      $sformat(name, "%0d.out", job);
-      out_file = $fopen(name, "wb");
-      $fwrite(out_file, "%u", latencies);
-      clocks <= 0;
-      running <= 1;
-    end else if (running) begin
-      clocks <= clocks + 1;
-      if (clocks < vectors) begin
-        got = $fread(record, in_file);
-        vector <= record;
-      end
-      $fwrite(out_file, "%u", signals);
-      if (clocks == vectors + {tail}) begin
-        running <= 0;
-        $fclose(in_file);
-        $fclose(out_file);
-      end
-    end
-  end
-endmodule
-"""
-
-
-def bench_source(module: str, parameters: dict[str, int] | None = None) -> tuple[str, str]:
-    """(name, Verilog text) of the bench of `module` with `parameters` set."""
-    about = MODULES[module]
+def bench_source(module: str) -> tuple[str, str]:
+    """(name, Verilog text) of the bench of `module`, a key of MODULES."""
+    spec = MODULES[module]
     observed = lanes(module)
-    wires, connections = [], []
-    count = len(about.inputs)
-    for k, port in enumerate(about.inputs):
-        now = f"vector[{64 * (count - 1 - k)}+:64]"
-        wires.append(f"  wire [63:0] in_{port};")
-        if port in about.late:
-            wires.append(
-                f"  delay #(.BITS(64), .CYCLES({about.late[port]})) u_late_{port}"
-                f" (.clk(clk), .in({now}), .out(in_{port}));"
+    count = len(spec.inputs)
+    lines = [f"  wire [64*{len(observed)}-1:0] signals, latencies;"]
+    connections = [".clk(clk)"]
+    for k, port in enumerate(spec.inputs):
+        word = f"vector[{64 * (count - 1 - k)}+:64]"
+        lines.append(f"  wire [63:0] in_{port};")
+        if port in spec.late:
+            lines.append(
+                f"  delay #(.BITS(64), .CYCLES({spec.late[port]})) u_late_{port}"
+                f" (.clk(clk), .in({word}), .out(in_{port}));"
             )
         else:
-            wires.append(f"  assign in_{port} = {now};")
-        connections.append(f",\n      .{port}(in_{port})")
-    connections += [f",\n      .{port}({port})" for port, _ in about.held]
-    assigns = []
+            lines.append(f"  assign in_{port} = {word};")
+        connections.append(f".{port}(in_{port})")
+    connections += [f".{port}({port})" for port, _ in spec.held]
+    lines.append(f"  {module} dut (")
+    lines.append("      " + ",\n      ".join(connections) + "\n  );")
     for k, lane in enumerate(observed):
-        assigns.append(f"  wire signed [63:0] lane_{k} = {lane.signal};")
-        # An unknown, which a file cannot hold, becomes a value that no signal has.
-        known = f"^lane_{k} === 1'bx ? {{1'b1, 63'b0}} : lane_{k}"
-        assigns.append(f"  assign signals[{64 * k}+:64] = {known};")
-        assigns.append(f"  assign latencies[{64 * k}+:64] = {lane.latency};")
-    set_parameters = ", ".join(f".{n}({v})" for n, v in (parameters or {}).items())
+        lines.append(f"  wire signed [63:0] lane_{k} = {lane.signal};")
+        lines.append(f"  assign signals[{64 * k}+:64] = {known(f'lane_{k}')};")
+        lines.append(f"  assign latencies[{64 * k}+:64] = {lane.latency};")
     top = f"{module}_bench"
-    text = _BENCH.format(
-        top=top, module=module, inputs=count, lane_count=len(observed), tail=256,
-        parameters=f" #({set_parameters})" if set_parameters else "",
-        held_ports="".join(f"    input wire [({bits})-1:0] {port},\n" for port, bits in about.held),
-        wires="\n".join(wires) + "\n", connections="".join(connections),
-        assigns="\n".join(assigns) + "\n",
+    text = bench_text(
+        top, "sim/module/units.py", count, "\n".join(lines),
+        at_start="      " + write("latencies"), per_clock="      " + write("signals"), tail=TAIL,
+        ports="".join(f"    input wire [({bits})-1:0] {port},\n" for port, bits in spec.held),
     )  # fmt: skip
     return top, text

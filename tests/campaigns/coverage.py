@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Line, branch and toggle coverage of rtl/ by the tests that simulate it: `make coverage`.
+"""Line, branch and toggle coverage of rtl/ by module, frame and configuration tests.
 
 Lines and branches have to be covered, all of them, but for WAIVERS; toggles are reported. The
 numbers go to build/coverage.json. Exit code: 0; 1 if something is not covered, or a test fails; 2.
@@ -21,7 +21,6 @@ from rich.table import Table
 from phong75.model.frame import InputError
 from phong75.scripts import console, options, recorded
 from phong75.scripts.main import single
-from phong75.scripts.recorded import Row
 from phong75.sim import design, environment
 from phong75.sim.coverage import points
 from phong75.sim.design import BUILD
@@ -84,15 +83,11 @@ def main(
     (BUILD / "coverage.json").write_text(json.dumps(summary, indent=2) + "\n")
     failed = bool(missing or done.returncode)
     if record:
-        share = {k: f"{100 * s['covered'] / s['points']:.4g} %" for k, s in summary.items()}
+        percent = {k: round(100 * s["covered"] / s["points"], 2) for k, s in summary.items()}
         recorded.record(
             "coverage", "make coverage", ("verilator",),
-            [Row("line and branch coverage of `rtl/`", f"{share['line']} and {share['branch']}; "
-                 f"toggles {share['toggle']}", "by module and frame tests and configuration tests; "
-                 f"{len(WAIVERS)} lines waived, of a function that runs when the design is "
-                 "elaborated")],
+            {"percent": percent, "points": summary, "waived_lines": len(WAIVERS)},
             failed=failed, part="pytest had arguments of its own" if arguments else "",
-            points=summary,
         )  # fmt: skip
     return console.FAILED if failed else console.GOOD
 

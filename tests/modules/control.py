@@ -1,6 +1,7 @@
-"""cocotb tests of span_walker and pixel_fifo, through sim/control_bench.v.
+# SPDX-License-Identifier: MIT
+"""cocotb tests of span_walker and pixel_fifo in sim/module/control_bench.v.
 
-Run by tests/test_modules.py.
+tests/test_modules.py runs them.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from phong75.sim import environment
 from phong75.sim.module.stream_tb import REGIMES, Clocked, pauses
 
 SEED = int(os.environ.get(environment.SEED, "75"))
-COORDINATE_BITS, MATERIAL_BITS, COLOUR_BITS = 4, 2, 3  # of the bench
+COORDINATE_BITS, MATERIAL_BITS, COLOUR_BITS = 4, 2, 3  # parameters of the bench
 SIZE = 1 << COORDINATE_BITS
 NAMED = [cocotb.Param(regime, regime) for regime in REGIMES]
 
@@ -26,7 +27,7 @@ NAMED = [cocotb.Param(regime, regime) for regime in REGIMES]
 
 @dataclass
 class Span:
-    """A span to walk; overflow_from: pixel from which on the interpolators say overflow."""
+    """A span. overflow_from: first pixel in which the interpolators report an overflow."""
 
     x: int
     y: int
@@ -37,12 +38,12 @@ class Span:
 
     @property
     def walked(self) -> int:
-        """How many pixels it gives."""
+        """Number of pixels of the span; an empty span has one."""
         return max(self.length, 1)
 
     @property
     def illegal(self) -> bool:
-        """Whether it should be flagged."""
+        """Whether the span must be flagged as illegal."""
         return (
             self.length == 0
             or self.x + self.length > SIZE
@@ -51,7 +52,12 @@ class Span:
 
 
 class WalkerTB(Clocked):
-    """span_walker with a source of spans, a source of credit, and the place of interpolators."""
+    """span_walker with a source of spans, a source of credit, and a model of the interpolators.
+
+    at: (span, pixel) that the interpolators hold, None if they hold no pixel. expected: (span,
+    pixel) to come. flag: whether illegal_span must be 1 in the present cycle. shown_at: cycles in
+    which a pixel was shown.
+    """
 
     def __init__(self, dut, note: str):
         super().__init__(dut)
@@ -60,9 +66,9 @@ class WalkerTB(Clocked):
         self.spans: deque[Span] = deque()
         self.offered = False
         self.idle, self.stall = pauses("never", 0), pauses("never", 0)
-        self.at: tuple[Span, int] | None = None  # what the interpolators stand at
+        self.at: tuple[Span, int] | None = None
         self.expected: deque[tuple[Span, int]] = deque()
-        self.flag = False  # wanted in the present clock
+        self.flag = False
         self.shown_at: list[int] = []
 
     def send(self, spans):
@@ -71,14 +77,14 @@ class WalkerTB(Clocked):
         self.expected.extend((span, k) for span in spans for k in range(span.walked))
 
     def forget(self):
-        """As after a reset."""
+        """Drop all spans and expectations, because the design is reset."""
         self.spans.clear()
         self.expected.clear()
         self.offered, self.at, self.flag = False, None, False
         self.drive(span_valid=0)
 
     async def step(self):
-        """One clock."""
+        """Run one cycle."""
         await self.edge()
         if not self.offered and self.spans and not next(self.idle):
             self.offered = True
@@ -118,19 +124,19 @@ class WalkerTB(Clocked):
         if accepted:
             self.at = self.spans.popleft(), 0
             self.offered = False
-        elif moves and loads:  # whatever stands at the inputs: no pixel may come of it
+        elif moves and loads:  # loads without a valid span: no pixel may follow
             self.at = None
         elif moves and self.at:
             self.at = self.at[0], self.at[1] + 1
 
     async def drain(self):
-        """Until all came, and some clocks more."""
+        """Run until all expected pixels came, and some more cycles."""
         quiet = 0
         while self.expected or self.spans:
             before = len(self.shown_at)
             await self.step()
             quiet = 0 if len(self.shown_at) > before else quiet + 1
-            assert quiet < 500, f"module span_walker, {self.note}: {quiet} clocks without a pixel"
+            assert quiet < 500, f"module span_walker, {self.note}: {quiet} cycles without a pixel"
         for _ in range(5):
             await self.step()
 
@@ -148,7 +154,7 @@ def _random_spans(rng, n: int) -> list[Span]:
 
 @cocotb.test()
 async def walker_exhaustive(dut):
-    """Every start and every length, at a pixel a clock without a bubble."""
+    """Every start and every length: one pixel per cycle, no bubble between spans."""
     tb = WalkerTB(dut, "every x and length")
     await tb.reset()
     rng = random.Random(SEED)
@@ -164,7 +170,7 @@ async def walker_exhaustive(dut):
 @cocotb.test()
 @cocotb.parametrize(idle=NAMED, stall=NAMED)
 async def walker_in_all_regimes(dut, idle, stall):
-    """However spans and credit come, every pixel is shown once with its normal, and flagged."""
+    """Under all pauses of spans and credit every pixel is shown once, with its normal and flag."""
     tb = WalkerTB(dut, f"idle {idle}, credit withheld {stall}, seed {SEED}")
     await tb.reset()
     tb.idle, tb.stall = pauses(idle, SEED), pauses(stall, SEED + 1)
@@ -174,7 +180,7 @@ async def walker_in_all_regimes(dut, idle, stall):
 
 @cocotb.test()
 async def walker_latency(dut):
-    """A span accepted now has its first pixel in the next clock."""
+    """The first pixel of a span is shown in the cycle after the span is accepted."""
     tb = WalkerTB(dut, "one span")
     await tb.reset()
     tb.send([Span(3, 4, 2, 1, True)])
@@ -186,7 +192,7 @@ async def walker_latency(dut):
 
 @cocotb.test()
 async def walker_reset(dut):
-    """A reset drops the span at work, without a flag, and the next span is whole."""
+    """A reset drops the current span without a flag; the next span is complete."""
     tb = WalkerTB(dut, f"reset, seed {SEED}")
     await tb.reset()
     rng = random.Random(SEED)
@@ -210,7 +216,11 @@ async def walker_reset(dut):
 
 
 class FifoTB(Clocked):
-    """pixel_fifo `which` of the bench, with the pipeline between its ends as a queue."""
+    """The pixel_fifo `which` of the bench; the pipeline beside the FIFO is modelled as a queue.
+
+    in_flight: {cycle of arrival: colour}. expected: (data, last) to come. waiting: the word that
+    the FIFO offers and that has not been taken. sent_at, taken_at: cycles of the pixels.
+    """
 
     def __init__(self, dut, which: str, note: str):
         super().__init__(dut)
@@ -229,15 +239,15 @@ class FifoTB(Clocked):
         self.latency = self.read(f"{self.which}_latency")
 
     def forget(self):
-        """As after a reset."""
-        self.in_flight: dict[int, tuple] = {}  # clock of arrival: colour
+        """Drop all pixels and expectations, because the design is reset."""
+        self.in_flight: dict[int, tuple] = {}
         self.expected: deque[tuple[int, int]] = deque()
         self.waiting: tuple[int, int] | None = None
         self.sent_at: list[int] = []
         self.taken_at: list[int] = []
 
     async def step(self):
-        """One clock."""
+        """Run one cycle."""
         await self.edge()
         rng, which = self.rng, self.which
         x, y, last = rng.randrange(SIZE), rng.randrange(SIZE), rng.randrange(2)
@@ -245,7 +255,7 @@ class FifoTB(Clocked):
         arriving = self.in_flight.pop(self.clock, None)
         shown = arriving or tuple(rng.randrange(1 << COLOUR_BITS) for _ in range(3))
         ready = not next(self.stall)
-        # `credit` is a register: what it says now is what the edge ahead sees.
+        # `credit` is a register: its present value is the one at the next rising edge.
         send = bool(self.to_send and not next(self.idle) and self.read(f"{which}_credit"))
         self.drive(place_x=x, place_y=y, place_last=last)
         self.drive(**{
@@ -266,12 +276,12 @@ class FifoTB(Clocked):
     def _observe(self, ready):
         where = f"module pixel_fifo ({self.which}), clock {self.clock}, {self.note}"
         valid = self.read(f"{self.which}_out_valid")
-        assert valid or not self.waiting, f"{where}: a waiting pixel went away"
+        assert valid or not self.waiting, f"{where}: a waiting pixel disappeared"
         if not valid:
             return
         word = self.read(f"{self.which}_out_data"), self.read(f"{self.which}_out_last")
         assert self.waiting in (None, word), f"{where}: {self.waiting} became {word}"
-        assert self.expected, f"{where}: {word} is left over"
+        assert self.expected, f"{where}: unexpected pixel {word}"
         assert word == self.expected[0], f"{where}: expected {self.expected[0]}, got {word}"
         self.waiting = word
         if ready:
@@ -280,7 +290,7 @@ class FifoTB(Clocked):
             self.taken_at.append(self.clock)
 
     async def drain(self):
-        """Until all came, and some clocks more."""
+        """Run until all expected pixels came, and some more cycles."""
         quiet = 0
         while self.to_send or self.expected:
             before = len(self.sent_at) + len(self.taken_at)
@@ -297,7 +307,7 @@ WHICH = [cocotb.Param(which, which) for which in ("fit", "over")]
 @cocotb.test()
 @cocotb.parametrize(which=WHICH, idle=NAMED, stall=NAMED)
 async def fifo_in_all_regimes(dut, which, idle, stall):
-    """However pixels and room come, every pixel leaves once, in order, with its own colour."""
+    """Under all pauses at both ends every pixel leaves once, in order, with its own colour."""
     tb = FifoTB(dut, which, f"idle {idle}, stall {stall}, seed {SEED}")
     await tb.start()
     tb.idle, tb.stall = pauses(idle, SEED), pauses(stall, SEED + 1)
@@ -308,7 +318,7 @@ async def fifo_in_all_regimes(dut, which, idle, stall):
 @cocotb.test()
 @cocotb.parametrize(which=WHICH)
 async def fifo_throughput(dut, which):
-    """A pixel a clock goes through, LATENCY + 2 clocks after it left the interpolators."""
+    """One pixel per cycle passes, LATENCY + 2 cycles after it left the interpolators."""
     tb = FifoTB(dut, which, f"full speed, seed {SEED}")
     await tb.start()
     tb.to_send = 200
@@ -321,8 +331,11 @@ async def fifo_throughput(dut, which):
 @cocotb.test()
 @cocotb.parametrize(which=WHICH)
 async def fifo_capacity(dut, which):
-    """As many pixels go in as there are slots, the least multiple of 16 that full speed needs,
-    and one waits at the output; again after a reset with pixels everywhere."""
+    """A blocked FIFO accepts as many pixels as it has slots, plus one at its output.
+
+    The number of slots is the smallest multiple of 16 that sustains one pixel per cycle. The same
+    holds after a reset with pixels in every stage.
+    """
     tb = FifoTB(dut, which, f"no room, seed {SEED}")
     await tb.start()
     slots = -(-(tb.latency + 4) // 16) * 16

@@ -1,6 +1,7 @@
-"""cocotb tests of the datapath modules: directed, exhaustive where the input fits, random.
+# SPDX-License-Identifier: MIT
+"""cocotb tests of the datapath modules: directed, exhaustive for small inputs, random.
 
-Run by tests/test_modules.py, one module a simulation, through the generated benches.
+tests/test_modules.py runs them, one module per simulation, in the benches of sim/module/units.py.
 """
 
 from __future__ import annotations
@@ -32,16 +33,16 @@ NOTE = f"seed {SEED}"
 
 
 def _only(module: str):
-    """The tests of other modules do not exist in this module's simulation."""
+    """Decorator: a test only in the simulation of `module`, else a plain function."""
     return cocotb.test() if module == MODULE else lambda test: test
 
 
 def _edges(fmt, rng, n: int) -> np.ndarray:
-    """Random codes, a third of them within 4 of an end, of 0 or of a power of two."""
+    """Random codes of `fmt`; a third of them within 4 of an end, of 0 or of a power of two."""
     codes = rng.integers(fmt.min, fmt.max + 1, n)
-    marks = [fmt.min, fmt.max, 0]
-    marks += [s << k for k in range(fmt.bits) for s in ((1, -1) if fmt.signed else (1,))]
-    near = rng.choice(marks, n) + rng.integers(-4, 5, n)
+    corners = [fmt.min, fmt.max, 0]
+    corners += [s << k for k in range(fmt.bits) for s in ((1, -1) if fmt.signed else (1,))]
+    near = rng.choice(corners, n) + rng.integers(-4, 5, n)
     return np.clip(np.where(rng.random(n) < 1 / 3, near, codes), fmt.min, fmt.max)
 
 
@@ -50,7 +51,7 @@ def _edges(fmt, rng, n: int) -> np.ndarray:
 
 @_only("inverse_sqrt_linear")
 async def inverse_sqrt_exhaustive(dut):
-    """Every operand, those below 1 included."""
+    """Every operand, including those below 1."""
     tb = UnitTB(dut, MODULE)
     for first in range(0, 1 << C.root_operand.bits, 1 << 20):
         operand = np.arange(first, first + (1 << 20))
@@ -61,7 +62,7 @@ async def inverse_sqrt_exhaustive(dut):
 
 @_only("inverse_sqrt_linear")
 async def inverse_sqrt_latency(dut):
-    """One operand at a time shows at the stated clock only."""
+    """A single operand changes the output in the cycle of the stated latency only."""
     await UnitTB(dut, MODULE).check_latency(
         [C.root_operand.one], [3 * C.root_operand.one], "inverse_sqrt_linear.round"
     )
@@ -71,7 +72,7 @@ async def inverse_sqrt_latency(dut):
 
 
 def _normals(rng, n: int) -> np.ndarray:
-    """Normals int64[3, n]: all lengths, unequal components, single components, zeros."""
+    """Normals int64[3, n]: all lengths, unequal components, single components, zero vectors."""
     normal = _edges(C.normal, rng, 3 * n).reshape(3, n) >> rng.integers(0, C.normal.bits, n)
     unequal = normal >> rng.integers(0, C.normal.bits, (3, n))
     normal = np.where(rng.random(n) < 0.5, normal, unequal)
@@ -92,7 +93,7 @@ async def normalizer_random(dut):
 
 @_only("normalizer")
 async def normalizer_small(dut):
-    """Every normal with components from -5 to 5, at every size."""
+    """Every normal with components from -5 to 5, times every power of two."""
     tb = UnitTB(dut, MODULE)
     side = np.arange(-5, 6)
     grid = np.stack(np.meshgrid(side, side, side)).reshape(3, -1)
@@ -105,7 +106,7 @@ async def normalizer_small(dut):
 
 @_only("normalizer")
 async def normalizer_halves(dut):
-    """|Zn| on and next to a half between two codes of the cosine, where -z and ~z differ."""
+    """|Zn| at and next to the middle between two codes of the cosine, where -z and ~z differ."""
     tb = UnitTB(dut, MODULE)
     rng = np.random.default_rng(SEED)
     drop = C.mantissa.fraction + C.root.fraction - C.cosine.fraction
@@ -118,7 +119,7 @@ async def normalizer_halves(dut):
         below = np.abs(trace["normalizer.scale"][2]) % (1 << drop)
         near.append(normal[:, np.abs(below - (1 << (drop - 1))) <= 2])
     normal = np.concatenate(near, axis=1)
-    assert normal.shape[1] > 50, f"only {normal.shape[1]} vectors are near a half; {NOTE}"
+    assert normal.shape[1] > 50, f"only {normal.shape[1]} vectors are near the middle; {NOTE}"
     trace = {}
     normalizer(normal, True, C, trace)
     await tb.hold(two_sided=1, valid=1)
@@ -127,7 +128,7 @@ async def normalizer_halves(dut):
 
 @_only("normalizer")
 async def normalizer_reset(dut):
-    """Zero normals on their way when a reset comes are not flagged after it."""
+    """Zero normals that are in the pipeline during a reset are not flagged after the reset."""
     tb = UnitTB(dut, MODULE)
     await tb.hold(valid=1)
     zeros = [np.zeros(50, np.int64)] * 3
@@ -137,13 +138,13 @@ async def normalizer_reset(dut):
     lane = [lane.stage for lane in lanes(MODULE)].index("normalizer.zero")
     for clock in range(20):
         flag = int(dut.signals.value) >> (64 * lane) & 1
-        assert not flag, f"module normalizer: zero_normal {clock} clocks after a reset"
+        assert not flag, f"module normalizer: zero_normal {clock} cycles after a reset"
         await FallingEdge(dut.clk)
 
 
 @_only("normalizer")
 async def normalizer_latency(dut):
-    """One normal at a time shows at the stated clock only."""
+    """A single normal changes the outputs in the cycle of the stated latency only."""
     tb = UnitTB(dut, MODULE)
     one = C.normal.one
     await tb.check_latency([one, 0, 0], [0, one, one], "normalizer.round")
@@ -157,7 +158,7 @@ async def normalizer_latency(dut):
 
 @_only("reflection")
 async def reflection_random(dut):
-    """Unit and arbitrary words, the half vector from light to opposite, and its extremes."""
+    """Unit normals and arbitrary words; half vectors over the whole range, and extreme ones."""
     tb = UnitTB(dut, MODULE)
     rng = np.random.default_rng(SEED)
     halves = [C.half_vector.quantize([np.sin(a), np.cos(a)]) for a in np.linspace(0, 1.57, 7)]
@@ -178,7 +179,7 @@ async def reflection_random(dut):
 
 @_only("reflection")
 async def reflection_latency(dut):
-    """One normal at a time shows at the stated clock only."""
+    """A single normal changes the outputs in the cycle of the stated latency only."""
     tb = UnitTB(dut, MODULE)
     await tb.hold(half_z=C.half_vector.max)
     await tb.check_latency([0, 0, C.unit.max], [C.unit.max // 2, 0, 0], "reflection.versine")
@@ -208,7 +209,7 @@ async def specular_power_random(dut):
 
 @_only("specular_power_tables")
 async def specular_power_latency(dut):
-    """One operand at a time shows at the stated clock only, also through the bypass."""
+    """A single operand changes the output at the stated latency only, also through the bypass."""
     tb = UnitTB(dut, MODULE)
     half, one = C.versine.one // 2, C.exponent.one
     await tb.check_latency([0, 2 * one], [half, 2 * one], "specular_power_tables.bypass")
@@ -229,7 +230,7 @@ async def specular_cosine_exhaustive(dut):
 
 @_only("specular_cosine")
 async def specular_cosine_latency(dut):
-    """One operand at a time shows at the stated clock only."""
+    """A single operand changes the output in the cycle of the stated latency only."""
     await UnitTB(dut, MODULE).check_latency([0], [C.versine.one // 2], "specular_cosine")
 
 
@@ -237,7 +238,7 @@ async def specular_cosine_latency(dut):
 
 
 def _frame(rng) -> Frame:
-    """All materials random, some at the ends of their ranges; a half vector in between."""
+    """A frame of random materials, some with coefficients of 0 and 1."""
     table = MaterialTable.empty(C)
     for m in range(C.materials):
         cp = rng.choice([0.0, 1.0], 3) if m < 4 else rng.random(3)
@@ -253,7 +254,7 @@ def _frame(rng) -> Frame:
 
 @_only("specular_weight")
 async def specular_weight_random(dut):
-    """All materials, all intervals, the ends of Zn."""
+    """All materials, all intervals of W(i), the ends of the range of Zn."""
     tb = UnitTB(dut, MODULE)
     rng = np.random.default_rng(SEED)
     frame = _frame(rng)
@@ -267,7 +268,7 @@ async def specular_weight_random(dut):
 
 @_only("shading_unit")
 async def shading_unit_random(dut):
-    """Random unit normals, lit and not, of all materials; red, green and blue apart."""
+    """Random unit normals, lit and unlit, of all materials, with three different channels."""
     tb = UnitTB(dut, MODULE)
     rng = np.random.default_rng(SEED)
     frame = _frame(rng)
@@ -290,12 +291,12 @@ async def shading_unit_random(dut):
 
 @_only("intensity_code")
 async def intensity_code_random(dut):
-    """Every code's borders, the ends of [0, 1] and of the word, and random words."""
+    """The limits of every code, the ends of [0, 1] and of the word, and random words."""
     tb = UnitTB(dut, MODULE)
     rng = np.random.default_rng(SEED)
     white = (1 << C.colour_bits) - 1
-    borders = np.round((np.arange(white + 1) + 0.5) / white * C.normal.one).astype(np.int64)
-    near = (borders[:, None] + np.arange(-200, 201)).reshape(-1)
+    limits = np.round((np.arange(white + 1) + 0.5) / white * C.normal.one).astype(np.int64)
+    near = (limits[:, None] + np.arange(-200, 201)).reshape(-1)
     value = np.concatenate([near, _edges(C.normal, rng, RANDOM)])
     trace = {}
     intensity_code(value, C, trace)
@@ -305,5 +306,5 @@ async def intensity_code_random(dut):
 
 @_only("intensity_code")
 async def intensity_code_latency(dut):
-    """One value at a time shows at the stated clock only."""
+    """A single value changes the output in the cycle of the stated latency only."""
     await UnitTB(dut, MODULE).check_latency([0], [C.normal.one], "intensity_code.code")

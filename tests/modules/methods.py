@@ -1,6 +1,7 @@
-"""cocotb tests of the modules of other methods (see model/sweep.py), as those of the datapath.
+# SPDX-License-Identifier: MIT
+"""cocotb tests of the modules of the other arithmetic methods (rtl/methods/).
 
-Run by tests/test_modules.py in the default configuration, by tests/test_sweep.py in others.
+tests/test_modules.py runs them, one module per simulation, in the benches of sim/module/units.py.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ NOTE = f"configuration {C.name}, seed {SEED}"
 
 
 def _only(*modules: str):
-    """The tests of other modules do not exist in this module's simulation."""
+    """Decorator: a test only in the simulation of one of `modules`, else a plain function."""
     return cocotb.test() if MODULE in modules else lambda test: test
 
 
@@ -45,7 +46,7 @@ _ROOTS = {
 
 @_only(*_ROOTS)
 async def inverse_sqrt_exhaustive(dut):
-    """Every operand, those below 1 included."""
+    """Every operand, including those below 1."""
     tb = UnitTB(dut, MODULE)
     for first in range(0, 1 << C.root_operand.bits, 1 << 20):
         operand = np.arange(first, first + (1 << 20))
@@ -56,14 +57,14 @@ async def inverse_sqrt_exhaustive(dut):
 
 @_only(*_ROOTS)
 async def inverse_sqrt_latency(dut):
-    """One operand at a time shows at the stated clock only."""
+    """A single operand changes the output in the cycle of the stated latency only."""
     one = C.root_operand.one
     await UnitTB(dut, MODULE).check_latency([one], [3 * one], _ROOTS[MODULE][1])
 
 
 @_only("newton_step")
 async def newton_step_random(dut):
-    """Any operand with any estimate within 11 % of its root, and with the largest code."""
+    """Random operands with estimates within 11 % of the root, and at the ends of the range."""
     tb = UnitTB(dut, MODULE)
     rng = np.random.default_rng(SEED)
     bits = C.root.bits
@@ -80,7 +81,7 @@ async def newton_step_random(dut):
 
 @_only("newton_step")
 async def newton_step_latency(dut):
-    """One estimate at a time shows at the stated clock only."""
+    """A single operand and estimate change the output in the cycle of the stated latency only."""
     one, y = 1 << (C.root.bits - 2), C.root.max
     await UnitTB(dut, MODULE).check_latency(
         [one, y], [one, C.root.quantize(0.95)], "newton_step.better"
@@ -104,7 +105,7 @@ async def unnormalized_random(dut):
 
 @_only("unnormalized")
 async def unnormalized_latency(dut):
-    """One normal at a time shows at the stated clock only."""
+    """A single normal changes the outputs in the cycle of the stated latency only."""
     tb = UnitTB(dut, MODULE)
     half = C.normal.one // 2
     await tb.check_latency([half, 0, 0], [0, half, half], "unnormalized.round")
@@ -113,7 +114,7 @@ async def unnormalized_latency(dut):
 
 @_only("quadratic_interpolator")
 async def quadratic_interpolator_random(dut):
-    """Spans of 1 to 60 pixels, any words, wrapped around; held at times, when nothing may move."""
+    """Spans of 1 to 60 pixels of random words that wrap around; without `advance` nothing moves."""
     tb = UnitTB(dut, MODULE)
     rng = np.random.default_rng(SEED)
     lengths = rng.integers(1, 61, 2000)
@@ -124,18 +125,18 @@ async def quadratic_interpolator_random(dut):
     pixels = quadratic_interpolator(*(w[span] for w in words), k, C)
     advance = rng.random(2 * len(k)) < 0.7
     advance[0] = True
-    place = np.minimum(np.cumsum(advance) - 1, len(k) - 1)  # the pixel taken, or held, at a clock
+    pixel = np.minimum(np.cumsum(advance) - 1, len(k) - 1)  # the pixel of each cycle
     advance &= np.cumsum(advance) <= len(k)
-    # While nothing advances, whatever stands at the other ports is not looked at.
-    at_ports = [np.where(advance, w[span][place], rng.integers(0, 99, len(place))) for w in words]
-    load = np.where(advance, k[place] == 0, rng.random(len(place)) < 0.5)
-    trace = {"quadratic_interpolator": (pixels[place],)}
+    # Without `advance` the other ports have random values, which must be ignored.
+    at_ports = [np.where(advance, w[span][pixel], rng.integers(0, 99, len(pixel))) for w in words]
+    load = np.where(advance, k[pixel] == 0, rng.random(len(pixel)) < 0.5)
+    trace = {"quadratic_interpolator": (pixels[pixel],)}
     await tb.check([advance, load, *at_ports], trace, NOTE, in_sequence=True)
 
 
 @_only("quadratic_normalizer")
 async def quadratic_normalizer_random(dut):
-    """Squares of normals of all lengths, near the highlight, too; and any words."""
+    """Squares of normals of all lengths, some near the highlight, and random words."""
     tb = UnitTB(dut, MODULE)
     rng = np.random.default_rng(SEED)
     direction = rng.normal(size=(3, RANDOM))
@@ -144,10 +145,10 @@ async def quadratic_normalizer_random(dut):
     normal = direction * 2.0 ** -rng.integers(0, 24, RANDOM)
     z = C.normal.quantize(normal[2])
     square, cross = (C.squared.quantize((normal[:n] ** 2).sum(axis=0)) for n in (3, 2))
-    cross -= rng.integers(0, 3, RANDOM)  # rounding takes it below 0
+    cross -= rng.integers(0, 3, RANDOM)  # rounding may make it negative
     for column, fmt in ((z, C.normal), (square, C.squared), (cross, C.squared)):
-        any_word = rng.random(RANDOM) < 0.2
-        column[any_word] = _edges(fmt, rng, int(any_word.sum()))
+        rows = rng.random(RANDOM) < 0.2
+        column[rows] = _edges(fmt, rng, int(rows.sum()))
         column[rng.random(RANDOM) < 0.02] = 0
     for two_sided in (0, 1):
         await tb.hold(two_sided=two_sided)
@@ -158,7 +159,7 @@ async def quadratic_normalizer_random(dut):
 
 @_only("quadratic_normalizer")
 async def quadratic_normalizer_latency(dut):
-    """One pixel at a time shows at the stated clock only."""
+    """A single pixel changes the outputs in the cycle of the stated latency only."""
     tb = UnitTB(dut, MODULE)
     one, square = C.normal.one, C.squared.one
     stage = "quadratic_normalizer.out"
@@ -178,7 +179,7 @@ _POWERS = {
 
 @_only(*_POWERS)
 async def power_random(dut):
-    """Random operands for random exponents, all versines near both ends, and any word as n."""
+    """Random operands and exponents, all versines near both ends, and random words as n."""
     tb = UnitTB(dut, MODULE)
     rng = np.random.default_rng(SEED)
     v = np.concatenate([
@@ -196,7 +197,7 @@ async def power_random(dut):
 
 @_only("specular_power_squaring")
 async def power_halves(dut):
-    """Products on and next to a half unit below 1/2, where the sign of a word would show."""
+    """Products just below 1/2, where a wrong sign of a word would be visible."""
     tb = UnitTB(dut, MODULE)
     rng = np.random.default_rng(SEED)
     near_v, near_n = [], []
@@ -222,7 +223,7 @@ async def power_halves(dut):
 
 @_only(*_POWERS)
 async def power_latency(dut):
-    """One operand at a time shows at the stated clock only, the exponent alone, too."""
+    """A single operand or exponent changes the output in the cycle of the stated latency only."""
     tb = UnitTB(dut, MODULE)
     some, one = C.versine.one // 16, C.exponent.one
     stage = _POWERS[MODULE][1]

@@ -1,7 +1,9 @@
-"""cocotb tests of the small modules: exhaustive where the input fits, random and corners beyond.
+# SPDX-License-Identifier: MIT
+"""cocotb tests of the small modules: exhaustive for small inputs, else random and corner cases.
 
-Run by tests/test_modules.py in one simulation, through the bench of sim/primitives.py. A vector
-enters every clock and is compared at the clock that the module's LATENCY states.
+tests/test_modules.py runs all tests in one simulation, in the bench of sim/module/primitives.py.
+One vector enters per cycle; the outputs are compared at the latency that the module states. Every
+test has the name of its module.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ import numpy as np
 
 from phong75.model.config import DEFAULT as C
 from phong75.model.registers import FIELDS, address_bits, word_bits
+from phong75.model.twin.pruning import normal_hold as twin
 from phong75.sim import environment
 from phong75.sim.module.primitives import (
     DEFAULTS,
@@ -31,10 +34,12 @@ RANDOM = 20_000
 
 def _of(module: str) -> list[cocotb.Param]:
     """The names of the instances of `module`, for parametrize."""
-    return [cocotb.Param(name, name) for name, about in INSTANCES.items() if about.module == module]
+    names = [name for name, instance in INSTANCES.items() if instance.module == module]
+    return [cocotb.Param(name, name) for name in names]
 
 
 def _signed(word, bits: int):
+    """The value of a two's complement `word` of `bits` bits."""
     return word - ((word >> (bits - 1) & 1) << bits)
 
 
@@ -46,17 +51,17 @@ def _corners(rng, bits: int, n: int = RANDOM) -> np.ndarray:
 
 
 def _pairs(rng, a_bits: int, b_bits: int):
-    """All pairs of words if they are few, else random ones and corners."""
+    """All pairs of words if these are at most 2**18, else random words and corner cases."""
     if a_bits + b_bits <= 18:
-        both = np.arange(1 << (a_bits + b_bits))
-        return both & ((1 << a_bits) - 1), both >> a_bits
+        pairs = np.arange(1 << (a_bits + b_bits))
+        return pairs & ((1 << a_bits) - 1), pairs >> a_bits
     return _corners(rng, a_bits), _corners(rng, b_bits)
 
 
 @cocotb.test()
 @cocotb.parametrize(name=_of("multiplier"))
 async def multiplier(dut, name):
-    """All pairs of small words, corners of large ones, in all combinations of signs."""
+    """All pairs of small words, corner cases of large ones, signed and unsigned."""
     p = INSTANCES[name].parameters
     a, b = _pairs(np.random.default_rng(SEED), p["A_BITS"], p["B_BITS"])
     x = _signed(a, p["A_BITS"]) if p["A_SIGNED"] else a
@@ -76,7 +81,7 @@ async def narrow_multiplier(dut, name):
 @cocotb.test()
 @cocotb.parametrize(name=_of("constant_multiplier"))
 async def constant_multiplier(dut, name):
-    """All short words, corners of long ones."""
+    """All short words, corner cases of long ones."""
     p = INSTANCES[name].parameters
     bits = p["BITS"]
     short = np.arange(1 << bits)
@@ -88,11 +93,11 @@ async def constant_multiplier(dut, name):
 @cocotb.test()
 @cocotb.parametrize(name=_of("leading_zeros"))
 async def leading_zeros(dut, name):
-    """Every place of the highest one with random bits below, no one at all, all short words."""
+    """Every position of the leading one with random bits below, zero, and all short words."""
     bits = INSTANCES[name].parameters["BITS"]
     rng = np.random.default_rng(SEED)
-    place = np.repeat(np.arange(bits), 200)
-    word = (1 << place) | rng.integers(0, 1 << bits, len(place)) & ((1 << place) - 1)
+    top = np.repeat(np.arange(bits), 200)
+    word = (1 << top) | rng.integers(0, 1 << bits, len(top)) & ((1 << top) - 1)
     word = np.concatenate([word, 1 << np.arange(bits), [0, 0]])
     word = np.arange(1 << bits) if bits <= 12 else rng.permutation(word)
     count = [bits - int(w).bit_length() for w in word]
@@ -102,7 +107,7 @@ async def leading_zeros(dut, name):
 @cocotb.test()
 @cocotb.parametrize(name=_of("left_shifter"))
 async def left_shifter(dut, name):
-    """Every count; every word too if they are short."""
+    """Every count; also every word if words are short."""
     p = INSTANCES[name].parameters
     word, count = _pairs(np.random.default_rng(SEED), p["BITS"], p["COUNT_BITS"])
     await PrimitivesTB(dut).check(name, (word, count), {"shifted": word << count}, NOTE)
@@ -111,7 +116,7 @@ async def left_shifter(dut, name):
 @cocotb.test()
 @cocotb.parametrize(name=_of("round_saturate"))
 async def round_saturate(dut, name):
-    """Every word if they are short, for several widths, signed and unsigned."""
+    """Every word if words are short, for several widths, signed and unsigned."""
     p = INSTANCES[name].parameters
     bits, signed = p["IN_BITS"], p["IS_SIGNED"]
     word = np.arange(1 << bits) if name in ROUNDERS else _round_words(p)
@@ -123,17 +128,18 @@ async def round_saturate(dut, name):
 
 
 def _round_words(p):
+    """Corner cases of all input bits, and of the bits that reach the output without saturation."""
     rng = np.random.default_rng(SEED)
     word = _corners(rng, p["IN_BITS"])
     small = _corners(rng, p["DROP"] + p["OUT_BITS"])
-    both = np.where(rng.random(RANDOM) < 0.5, word, small)
-    return both & ((1 << p["IN_BITS"]) - 1)
+    mixed = np.where(rng.random(RANDOM) < 0.5, word, small)
+    return mixed & ((1 << p["IN_BITS"]) - 1)
 
 
 @cocotb.test()
 @cocotb.parametrize(name=_of("delay"))
 async def delay(dut, name):
-    """A random word comes out CYCLES clocks later."""
+    """Random words come out CYCLES cycles later."""
     word = np.random.default_rng(SEED).integers(0, 1 << 13, 500)
     await PrimitivesTB(dut).check(name, (word,), {"out": word}, NOTE)
 
@@ -141,7 +147,7 @@ async def delay(dut, name):
 @cocotb.test()
 @cocotb.parametrize(name=_of("rom"))
 async def rom(dut, name):
-    """Every word, in order and not; a ROM without contents holds zeros."""
+    """Every word, in order and in random order; a ROM without contents holds zeros."""
     words = np.zeros(512, np.int64) if name in DEFAULTS else np.array(ROM_WORDS)
     rng = np.random.default_rng(SEED)
     address = np.concatenate([np.arange(len(words)), rng.integers(0, len(words), 500)])
@@ -149,9 +155,21 @@ async def rom(dut, name):
 
 
 @cocotb.test()
-@cocotb.parametrize(name=_of("ram") + _of("small_ram"))
-async def memory(dut, name):
-    """Random writes and reads at once; a read of the word being written gives the old one."""
+@cocotb.parametrize(name=_of("ram"))
+async def ram(dut, name):
+    """See `_memory`."""
+    await _memory(dut, name)
+
+
+@cocotb.test()
+@cocotb.parametrize(name=_of("small_ram"))
+async def small_ram(dut, name):
+    """See `_memory`."""
+    await _memory(dut, name)
+
+
+async def _memory(dut, name):
+    """Random writes and reads in the same cycles; a read of a word being written gives the old."""
     p = INSTANCES[name].parameters
     size, rng = 1 << p["ADDRESS_BITS"], np.random.default_rng(SEED)
     n = 2 * size + 4000
@@ -173,7 +191,7 @@ async def memory(dut, name):
 @cocotb.test()
 @cocotb.parametrize(name=_of("linear_interpolator"))
 async def linear_interpolator(dut, name):
-    """Random values, loaded or summed; overflow stays once a sum left the word, until a load."""
+    """Random values, loaded or added; overflow stays 1 after a sum left the word, until a load."""
     bits = INSTANCES[name].parameters["NORMAL_BITS"]
     rng = np.random.default_rng(SEED)
     n = RANDOM
@@ -198,23 +216,22 @@ async def linear_interpolator(dut, name):
 
 @cocotb.test()
 async def normal_hold(dut):
-    """The last normal that may be lit stays, through others and through clocks without a pixel."""
+    """The last normal that may be lit is held during other normals and cycles without a pixel."""
     rng = np.random.default_rng(SEED)
     x, y, z = (_corners(rng, C.normal.bits) for _ in range(3))
     two_sided, valid = rng.random(RANDOM) < 0.3, rng.random(RANDOM) < 0.5
-    shown = two_sided | (z >> (C.normal.bits - 1) == 0)
-    taken = valid & shown
-    taken[0] = valid[0] = two_sided[0] = shown[0] = True
-    last = np.maximum.accumulate(np.where(taken, np.arange(RANDOM), 0))
-    expected = {"held_valid": valid, "shown": shown}
-    expected |= {"held_x": x[last], "held_y": y[last], "held_z": z[last]}
+    valid[0] = two_sided[0] = True
+    normal = np.stack([_signed(word, C.normal.bits) for word in (x, y, z)])
+    held = twin.normal_hold(normal[:, valid], two_sided[valid])[0][:, np.cumsum(valid) - 1]
+    expected = {"held_valid": valid, "shown": two_sided | (normal[2] >= 0)}
+    expected |= dict(zip(("held_x", "held_y", "held_z"), held, strict=True))
     inputs = x, y, z << 2 | valid << 1 | two_sided
     await PrimitivesTB(dut).check("hold", inputs, expected, NOTE)
 
 
 @cocotb.test()
 async def register_map(dut):
-    """Every address, written or not, gives its register or its strobe and nothing else."""
+    """Every address sets its register or its strobe and no other, and only with write_enable."""
     rng = np.random.default_rng(SEED)
     registers = {"half_x": C.half_vector.bits, "half_z": C.half_vector.bits, "control": 1}
     address = np.concatenate([
@@ -242,7 +259,7 @@ async def register_map(dut):
         port = "two_sided" if name == "control" else name
         before = word[list(registers).index(name)]
         held = np.where(latest > 0, word[latest], before)
-        expected[port] = np.append(before, held[:-1])  # a clock after the strobes
+        expected[port] = np.append(before, held[:-1])  # one cycle after the strobes
     tb = PrimitivesTB(dut)
     inputs = (address, enable, word)
     await tb.send("register_map", *(v[: len(registers)] for v in inputs))
@@ -251,7 +268,7 @@ async def register_map(dut):
 
 @cocotb.test()
 async def colour_channel(dut):
-    """Random, dark and saturated sums of every material, lit and not, against exact integers."""
+    """Random, dark and saturated sums of every material, lit and unlit, against exact integers."""
     rng = np.random.default_rng(SEED)
     one = C.coefficient.one
     ambient = np.append(rng.integers(0, one // 2, C.materials - 2), [0, one])
@@ -275,19 +292,20 @@ async def colour_channel(dut):
         fraction - C.coefficient.fraction - C.cosine.fraction
     )  # fmt: skip
     exact = base + np.where(lit, rise + specular, 0)
-    # A fifth of the sums at a half between two codes, or one unit of the cut below it.
-    place = rng.integers(0, 255, n) * 2 + 1
-    cut = 1 << (fraction - C.intensity.fraction)
-    edge = -(-place * C.intensity.one // 510) * cut - rng.integers(0, 2, n)
+    # Some of the sums are moved to the middle between two codes, or just below: S is truncated to
+    # multiples of `unit` before it is rounded to a code.
+    middle = rng.integers(0, 255, n) * 2 + 1
+    unit = 1 << (fraction - C.intensity.fraction)
+    edge = -(-middle * C.intensity.one // 510) * unit - rng.integers(0, 2, n)
     fits = (edge - base - rise >= 0) & (edge - base - rise <= 1 << fraction)
     near = lit & fits & (rng.random(n) < 0.5)
     specular = np.where(near, edge - base - rise, specular)
     exact = np.where(near, edge, exact)
-    s = np.minimum(exact, 1 << fraction) // cut
+    s = np.minimum(exact, 1 << fraction) // unit
     code = (s * 510 + C.intensity.one) // (2 * C.intensity.one)
     word = material << (C.cosine.bits + 1) | lit << C.cosine.bits | cosine
-    assert near.sum() > n // 20, "the edges between codes are hardly tried"
+    assert near.sum() > n // 20, "too few sums are at the middle between two codes"
     await tb.check("colour_channel", (word, specular), {"colour": code}, NOTE)
-    # A strobe off writes nothing.
+    # Without a strobe nothing is written.
     quiet = rng.integers(0, 1 << to_write, n)
     await tb.check("colour_channel", (word, specular, quiet), {"colour": code}, NOTE)

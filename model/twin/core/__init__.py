@@ -1,1 +1,2 @@
-"""Twins of rtl/core/: the paper's pipeline."""
+# SPDX-License-Identifier: MIT
+"""Twins of rtl/core/: Phong's pipeline, from a span to a pixel."""

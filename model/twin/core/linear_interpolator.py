@@ -1,23 +1,22 @@
-"""Twin of rtl/linear_interpolator.v: one component of the normal along spans.
+# SPDX-License-Identifier: MIT
+"""Twin of rtl/core/linear_interpolator.v: one component of the normal along spans.
 
-Linear interpolation between the ends of a span (the paper, eq. (2) and Fig. 3) by forward
-differences: exact, since only integers are added.
+Linear interpolation between the ends of a span (Phong 1975, eq. (2) and Fig. 3) by forward
+differences. The result is exact, since integers are added.
 """
 
 from __future__ import annotations
 
-import numpy as np
-
+from phong75.model.arrays import Flags, Ints
 from phong75.model.config import Config
 
 
-def linear_interpolator(start, step, k, config: Config):
-    """Component at pixel `k` of spans with `start` and `step` (int64[n], `normal`).
+def linear_interpolator(start: Ints, step: Ints, k: Ints, config: Config) -> tuple[Ints, Flags]:
+    """The component at pixel `k` of spans with `start` and `step`, int64[n] in `normal` (s1.30).
 
-    Returns the component, wrapped to the word as the adder does, and whether it left the word
-    (bool[n]): then the span is illegal.
+    Returns the component, wrapped to the word as the adder wraps, and whether the exact value left
+    the word (bool[n]), which makes the span illegal.
     """
     exact = start + k * step
-    sign = 1 << (config.normal.bits - 1)
-    wrapped = ((exact + sign) & ((sign << 1) - 1)) - sign
-    return wrapped, np.asarray(exact != wrapped)
+    wrapped = config.normal.wrap(exact)
+    return wrapped, exact != wrapped

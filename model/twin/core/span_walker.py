@@ -1,17 +1,38 @@
-"""Twin of rtl/span_walker.v: spans become pixels, left to right."""
+# SPDX-License-Identifier: MIT
+"""Twin of rtl/core/span_walker.v: spans become pixels, from left to right."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import NamedTuple
+
 import numpy as np
 
+from phong75.model.arrays import Flags, Ints, Spans
 from phong75.model.config import Config
 
+#: Pixels that the twin works on at a time: the temporaries of one block fit the cache.
+BLOCK = 1 << 14
 
-def span_walker(spans, first: int, stop: int, config: Config):
+
+class WalkedPixels(NamedTuple):
+    """Consecutive pixels of a stream of spans, one entry a pixel.
+
+    span: int64[n], index of the pixel's span, rising. k: int64[n], number of the pixel in its span,
+    from 0. x, y: int64[n], place on the screen. last: bool[n], the last pixel of the frame.
+    """
+
+    span: Ints
+    k: Ints
+    x: Ints
+    y: Ints
+    last: Flags
+
+
+def span_walker(spans: Spans, first: int, stop: int, config: Config) -> WalkedPixels:
     """Pixels `first` to `stop` (exclusive) of the stream that `spans` (SPAN_DTYPE[n]) make.
 
-    Returns the index of each pixel's span, its place k in the span, its x (wrapped to the
-    counter), y, and whether it is the last of the frame. A length of 0 is walked as 1 pixel.
+    x wraps as the counter of `coordinate_bits` does. A span of length 0 is walked as 1 pixel.
     """
     length = np.maximum(spans["length"], 1).astype(np.int64)
     end = np.cumsum(length)
@@ -20,4 +41,17 @@ def span_walker(spans, first: int, stop: int, config: Config):
     k = pixel - (end - length)[span]
     x = (spans["x"][span] + k) & (config.max_size - 1)
     last = spans["last"][span] & (k == length[span] - 1)
-    return span, k, x, spans["y"][span].astype(np.int64), last
+    return WalkedPixels(span, k, x, spans["y"][span].astype(np.int64), last)
+
+
+def pixel_count(spans: Spans) -> int:
+    """How many pixels `spans` (SPAN_DTYPE[n]) make."""
+    return int(np.maximum(spans["length"], 1).sum())
+
+
+def walk(spans: Spans, config: Config) -> Iterator[tuple[slice, WalkedPixels]]:
+    """Yield all pixels of `spans` in blocks of BLOCK: their place in the stream, and the pixels."""
+    total = pixel_count(spans)
+    for first in range(0, total, BLOCK):
+        block = slice(first, min(first + BLOCK, total))
+        yield block, span_walker(spans, first, block.stop, config)

@@ -1,30 +1,37 @@
-"""Twin of rtl/specular_power_tables.v: cos(s)**n = 2**(-n * -log2(1 - v)), v = 1 - cos(s)."""
+# SPDX-License-Identifier: MIT
+"""Twin of rtl/core/specular_power_tables.v: cos(s)**n = 2**(n log2(1 - v)), v = 1 - cos(s).
+
+Two tables of straight lines give -log2 and 2**-f; a product with n stands between them.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
-from phong75.model import fixed
+from phong75.model.arrays import Ints, Trace
 from phong75.model.config import Config
 from phong75.model.tables import exp_table, log_table
 from phong75.model.twin.core.specular_cosine import specular_cosine
+from phong75.model.twin.primitives.leading_zeros import leading_zeros
+from phong75.model.twin.primitives.left_shifter import left_shifter
+from phong75.model.twin.primitives.round_saturate import round_saturate
 
 
-def leading_ones(v, config: Config):
-    """Stage 1: cos(s) = 2**-e (1 - t), 0 <= t < 1/2: e is the number of leading ones of v.
+def leading_ones(v: Ints, config: Config) -> tuple[Ints, Ints]:
+    """Stage 1: e and t of cos(s) = 2**-e (1 - t), 0 <= t < 1/2: e is the number of leading ones of
+    v, t is what follows them, in `versine` (u0.22).
 
-    Without `log_octaves` e is at most 1, and where it is 1 the power vanishes whatever t is.
+    Without `log_octaves` e is at most 1; where e is 1 the power vanishes whatever t is.
     """
     if not config.log_octaves:
         top = config.versine.bits - 1
         return v >> top, v & ((1 << top) - 1)
-    ones = config.versine.max - v
-    e = config.versine.bits - fixed.bit_length(ones)
-    return e, (v << e) & config.versine.max
+    e = leading_zeros(config.versine.max - v, config.versine.bits)
+    return e, left_shifter(v, e, config.versine.bits)
 
 
-def log_lookup(t, config: Config):
-    """Stage 2: table line of -log2(1 - t) and offset in the segment."""
+def log_lookup(t: Ints, config: Config) -> tuple[Ints, Ints, Ints]:
+    """Stage 2: value and slope of -log2(1 - t) in the segment of t, and the offset of t in it."""
     offset_bits = config.versine.bits - 1 - config.log_index_bits
     table = log_table(config)
     address = (t >> offset_bits) & ((1 << config.log_index_bits) - 1)
@@ -32,35 +39,37 @@ def log_lookup(t, config: Config):
     return np.take(table.value, address), np.take(table.slope, address), offset
 
 
-def log_refine(e, value, slope, offset, config: Config):
-    """Stage 3: -log2(cos s) = e + value + slope * offset, in units of `log_value`."""
+def log_refine(e: Ints, value: Ints, slope: Ints, offset: Ints, config: Config) -> Ints:
+    """Stage 3: g = -log2(cos s) = e + value + slope * offset, in units of `log_value` (2**-22)."""
     offset_bits = config.versine.bits - 1 - config.log_index_bits
     return (e << config.log_value.fraction) + value + ((slope * offset) >> offset_bits)
 
 
 def log_bits(config: Config) -> int:
-    """Width of -log2(cos s): up to `versine.bits` + 1 (without `log_octaves` below 2), with the
-    fraction of `log_value`."""
+    """Width of g: the fraction of `log_value`, and integer bits for the largest e + 1."""
     most = config.versine.bits if config.log_octaves else 1
     return config.log_value.fraction + most.bit_length()
 
 
-def log_normalize(g, config: Config):
-    """Stage 4: the top `log_mantissa_bits` of g below its leading zeros, and their number."""
+def log_normalize(g: Ints, config: Config) -> tuple[Ints, Ints]:
+    """Stage 4: g without its leading zeros, cut to `log_mantissa_bits`, and how many zeros were
+    shifted out (no more than there are bits to cut)."""
     most = log_bits(config) - config.log_mantissa_bits
-    k = np.minimum(log_bits(config) - fixed.bit_length(g), most)
+    k = np.minimum(leading_zeros(g, log_bits(config)), most)
     return (g << k) >> most, k
 
 
-def times_exponent(mantissa, k, n, config: Config):
-    """Stage 5: n * -log2(cos s) in `power_log`, cut; saturated where the power vanishes."""
+def times_exponent(mantissa: Ints, k: Ints, n: Ints, config: Config) -> Ints:
+    """Stage 5: x = n g in `power_log` (u5.16), cut; clamped to the largest code, where the power
+    is 0."""
     most = log_bits(config) - config.log_mantissa_bits
     drop = config.log_value.fraction + config.exponent.fraction - config.power_log.fraction - most
     return np.minimum((mantissa * n) >> (drop + k), config.power_log.max)
 
 
-def exp_lookup(x, config: Config):
-    """Stage 6: table line of 2**-f for the fraction f of x, offset, and the integer part."""
+def exp_lookup(x: Ints, config: Config) -> tuple[Ints, Ints, Ints, Ints]:
+    """Stage 6: value and slope of 2**-f in the segment of f, the fraction of x; the offset of f in
+    it; and the integer part of x."""
     offset_bits = config.power_log.fraction - config.exp_index_bits
     table = exp_table(config)
     address = (x >> offset_bits) & ((1 << config.exp_index_bits) - 1)
@@ -69,26 +78,27 @@ def exp_lookup(x, config: Config):
     return np.take(table.value, address), np.take(table.slope, address), offset, whole
 
 
-def exp_refine(value, slope, offset, config: Config):
-    """Stage 7: 2**-f in `exp_value`."""
+def exp_refine(value: Ints, slope: Ints, offset: Ints, config: Config) -> Ints:
+    """Stage 7: 2**-f = value - slope * offset in `exp_value` (u0.20); the product is cut."""
     return value - ((slope * offset) >> (config.power_log.fraction - config.exp_index_bits))
 
 
-def exp_shift(line, whole, config: Config):
-    """Stage 8: 2**-x in `power`: shifted by the integer part, rounded, saturated below 1."""
+def exp_shift(line: Ints, whole: Ints, config: Config) -> Ints:
+    """Stage 8: 2**-x in `power` (u0.18): shifted by the integer part, rounded, clamped below 1."""
     drop = config.exp_value.fraction - config.power.fraction
-    return fixed.saturate(fixed.round_shift(line >> whole, drop), config.power)
+    return round_saturate(line >> whole, drop, config.power)
 
 
-def bypass(power, v, n, config: Config):
-    """Stage 9: for n = 1 cos(s) itself in place of the power."""
+def bypass(power: Ints, v: Ints, n: Ints, config: Config) -> Ints:
+    """Stage 9: where n = 1, cos(s) itself in place of the power (with `power_bypass`)."""
     if not config.power_bypass:
         return power
     return np.where(n == config.exponent.one, specular_cosine(v, config), power)
 
 
-def specular_power_tables(v, n, config: Config, trace: dict | None = None):
-    """cos(s)**n, int64[n] in `power`, from v (`versine`) and n (`exponent`, 1 to 128)."""
+def specular_power_tables(v: Ints, n: Ints, config: Config, trace: Trace | None = None) -> Ints:
+    """cos(s)**n, int64[n] in `power` (u0.18), of v = 1 - cos(s) in `versine` (u0.22) and n in
+    `exponent` (u8.9), 1 to 128."""
     e, t = leading_ones(v, config)
     value, slope, offset = log_lookup(t, config)
     g = log_refine(e, value, slope, offset, config)

@@ -1,1 +1,2 @@
-"""Twins of rtl/methods/: other ways to the same result."""
+# SPDX-License-Identifier: MIT
+"""Twins of rtl/methods/: other ways to the same result, for the sweep."""

@@ -1,20 +1,25 @@
-"""Twin of rtl/inverse_sqrt_iterated.v: 1/sqrt(x) from an estimate by Newton's iteration."""
+# SPDX-License-Identifier: MIT
+"""Twin of rtl/methods/inverse_sqrt_iterated.v: 1/sqrt(x) from an estimate by Newton's iteration."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from phong75.model.arrays import Ints, Trace
 from phong75.model.config import Config
 from phong75.model.tables import inverse_sqrt_start
 from phong75.model.twin.methods.newton_step import newton_step
 
-#: Fraction bits of a float32, and its famous constant (with x and the result biased alike).
+#: Fraction bits of a float32.
 _FRACTION = 23
+
+#: The constant of the fast inverse square root (Quake III, 1999), less the exponent biases of x
+#: (half of 127) and of the result (125), which the hardware does not carry.
 _CONSTANT = 0x5F3759DF - 127 * 2 ** (_FRACTION - 1) - 125 * 2**_FRACTION
 
 
-def start_table(operand, config: Config):
-    """Stage 1, `table`: the constant of the operand's segment, in `root`."""
+def start_table(operand: Ints, config: Config) -> Ints:
+    """Stage 1 by the method `table`: the constant of the operand's segment, in `root` (u0.18)."""
     top = config.root_operand.bits - 1
     high = operand >> top
     aligned = operand << (1 - high)
@@ -23,8 +28,9 @@ def start_table(operand, config: Config):
     return np.take(table.value, (high << config.start_index_bits) | segment)
 
 
-def start_fast_inverse(operand, config: Config):
-    """Stage 1, `magic`: 0x5f3759df - (float32 bits of x >> 1), read as float32, cut to `root`."""
+def start_fast_inverse(operand: Ints, config: Config) -> Ints:
+    """Stage 1 by the method `fast_inverse`: 0x5f3759df - (float32 bits of x >> 1), read as a
+    float32, cut to `root` (u0.18)."""
     top = config.root_operand.bits - 1
     high = operand >> top
     fraction = (operand << (1 - high)) & ((1 << top) - 1)
@@ -36,15 +42,16 @@ def start_fast_inverse(operand, config: Config):
     return np.where(half >= one, significand >> drop, significand >> (drop + 1))
 
 
-def inverse_sqrt_iterated(operand, config: Config, trace: dict | None = None):
-    """1/sqrt of `operand` (int64[n], `root_operand`, in [1, 4)) as `root` codes.
+def inverse_sqrt_iterated(operand: Ints, config: Config, trace: Trace | None = None) -> Ints:
+    """1/sqrt(x), int64[n] in `root` (u0.18), of `operand` x, int64[n] in `root_operand` (u2.20).
 
-    Below 1 the leading one is missing and is taken as there.
+    `root_newton_steps` steps follow the first estimate. The leading bit is implied: an operand in
+    [0, 1) stands for 1 + x.
     """
-    magic = config.root_method == "fast_inverse"
-    y = start = (start_fast_inverse if magic else start_table)(operand, config)
-    one = np.where(operand >> (config.root_operand.bits - 1), 0, config.root_operand.one)
-    x = (operand | one) >> (config.root_operand.bits - config.root.bits)
+    fast = config.root_method == "fast_inverse"
+    y = start = (start_fast_inverse if fast else start_table)(operand, config)
+    implied = np.where(operand >> (config.root_operand.bits - 1), 0, config.root_operand.one)
+    x = (operand | implied) >> (config.root_operand.bits - config.root.bits)
     for _ in range(config.root_newton_steps):
         y = newton_step(x, y, config)
     if trace is not None:

@@ -1,18 +1,24 @@
-"""Twin of rtl/newton_step.v: one step of Newton's iteration for 1/sqrt(x)."""
+# SPDX-License-Identifier: MIT
+"""Twin of rtl/methods/newton_step.v: one step of Newton's iteration for 1/sqrt(x).
+
+y (3 - x y**2) / 2, computed as y + y e / 2 with the residual e = 1 - x y**2.
+"""
 
 from __future__ import annotations
 
-from phong75.model import fixed
+from phong75.model.arrays import Ints, Trace
 from phong75.model.config import Config
+from phong75.model.twin.primitives.round_saturate import round_saturate
 
 
-def square(y, config: Config):
-    """Stage 1: y**2 in `root`."""
-    return fixed.saturate(fixed.round_shift(y * y, config.root.bits), config.root)
+def square(y: Ints, config: Config) -> Ints:
+    """Stage 1: y**2 in `root` (u0.18), rounded."""
+    return round_saturate(y * y, config.root.bits, config.root)
 
 
-def error(x, squared, config: Config):
-    """Stage 2: e = 1 - x y**2, |e| < 1/4, in units of 2**-(bits + 1), up to one unit too small.
+def error(x: Ints, squared: Ints, config: Config) -> Ints:
+    """Stage 2: the residual e = 1 - x y**2, |e| < 1/4, in units of 2**-(bits + 1) for `bits` of
+    `root`: cut, then up to one more unit too small.
 
     x: int64[n], the top bits of the operand: 2 integer bits, as many bits as `root`.
     """
@@ -22,14 +28,17 @@ def error(x, squared, config: Config):
     return word - ((word >> (bits - 1)) << bits)
 
 
-def better(y, e, config: Config):
-    """Stage 3: y + y e / 2 in `root`, rounded."""
+def better(y: Ints, e: Ints, config: Config) -> Ints:
+    """Stage 3: y + y e / 2 in `root` (u0.18), rounded."""
     bits = config.root.bits
-    return fixed.saturate(fixed.round_shift((y << (bits + 2)) + y * e, bits + 2), config.root)
+    return round_saturate((y << (bits + 2)) + y * e, bits + 2, config.root)
 
 
-def newton_step(x, y, config: Config, trace: dict | None = None):
-    """A better estimate (int64[n], `root`) of 1/sqrt(x) from the estimate `y` (`root`)."""
+def newton_step(x: Ints, y: Ints, config: Config, trace: Trace | None = None) -> Ints:
+    """A better estimate of 1/sqrt(x), int64[n] in `root` (u0.18), from the estimate `y` in `root`.
+
+    x: as in `error`.
+    """
     squared = square(y, config)
     e = error(x, squared, config)
     result = better(y, e, config)

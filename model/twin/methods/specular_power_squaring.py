@@ -1,38 +1,41 @@
-"""Twin of rtl/specular_power_squaring.v: cos(s)**n for whole n by repeated squaring."""
+# SPDX-License-Identifier: MIT
+"""Twin of rtl/methods/specular_power_squaring.v: cos(s)**n for whole n by repeated squaring."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from phong75.model import fixed
+from phong75.model.arrays import Flags, Ints, Trace
 from phong75.model.config import Config
 from phong75.model.twin.core.specular_cosine import specular_cosine
+from phong75.model.twin.primitives.round_saturate import round_half_up, round_saturate
 
 
-def whole(n, config: Config):
-    """Stage 1: n (`exponent`) rounded to a whole number, half up, in its integer bits."""
-    fraction = config.exponent.fraction
-    return fixed.round_shift(n, fraction) & ((1 << config.exponent.integer) - 1)
+def whole(n: Ints, config: Config) -> Ints:
+    """First, n in `exponent` (u8.9) is rounded half up to a whole number, in its integer bits."""
+    return round_half_up(n, config.exponent.fraction) & ((1 << config.exponent.integer) - 1)
 
 
-def square(base, config: Config):
-    """Of every stage: the square of `base` (`power`), rounded."""
-    return fixed.saturate(fixed.round_shift(base * base, config.power.bits), config.power)
+def square(base: Ints, config: Config) -> Ints:
+    """In every stage: the square of `base` in `power` (u0.18), rounded."""
+    return round_saturate(base * base, config.power.bits, config.power)
 
 
-def times(result, base, some, bit, config: Config):
-    """Of every stage: `result` times `base` where n has this bit, else `result`.
+def times(result: Ints, base: Ints, some: Flags, bit: Flags, config: Config) -> Ints:
+    """In every stage: `result` times `base` (both in `power`) where n has the stage's bit, else
+    `result`.
 
-    some: whether n has a bit below; the first one found takes `base` itself.
+    some: whether n has a lower bit. The first bit that n has takes `base` itself.
     """
-    product = fixed.saturate(fixed.round_shift(result * base, config.power.bits), config.power)
+    product = round_saturate(result * base, config.power.bits, config.power)
     return np.where(bit, np.where(some, product, base), result)
 
 
-def specular_power_squaring(v, n, config: Config, trace: dict | None = None):
-    """cos(s)**n, int64[n] in `power`, from v (`versine`) and n (`exponent`, 1 to 128).
+def specular_power_squaring(v: Ints, n: Ints, config: Config, trace: Trace | None = None) -> Ints:
+    """cos(s)**n, int64[n] in `power` (u0.18), of v = 1 - cos(s) in `versine` (u0.22) and n in
+    `exponent` (u8.9), 1 to 128.
 
-    Beyond 128 only bit 7 of n counts; n = 0 gives the largest code.
+    Above 128, the result depends on bit 7 of n only; n = 0 gives the largest code.
     """
     bits = whole(n, config)
     base = specular_cosine(v, config)

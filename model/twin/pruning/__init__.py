@@ -1,1 +1,2 @@
-"""Twins of rtl/pruning/: what pruned builds add."""
+# SPDX-License-Identifier: MIT
+"""Twins of rtl/pruning/: modules of builds that leave something out."""

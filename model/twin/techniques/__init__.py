@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: MIT
 """Twins of rtl/techniques/: Gouraud's and flat shading."""

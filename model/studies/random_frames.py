@@ -1,4 +1,5 @@
-"""Random frames for the tests of whole pipelines."""
+# SPDX-License-Identifier: MIT
+"""Random frames of legal spans: stimuli for tests of the whole pipeline and for long runs."""
 
 from __future__ import annotations
 
@@ -10,11 +11,15 @@ from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable
 
 
 def random_frame(
-    seed, spans: int, longest: int, two_sided: bool = False, config: Config = C
+    seed: int | list[int], spans: int, longest: int, two_sided: bool = False, config: Config = C
 ) -> Frame:
-    """`spans` legal spans of 1 to `longest` pixels with normals of all lengths and directions
-    (half of them lit throughout), of random materials; or with intensities within [0, 1] and
-    beyond, where `config` has those."""
+    """A frame of `spans` legal spans of 1 to `longest` pixels each, of random materials.
+
+    The normals have all directions and lengths; about half of the spans are lit throughout. For
+    Gouraud and flat shading (`config.technique`) `start` and `step` are read as intensities, some
+    outside [0, 1]. The frame is in the formats of the default configuration. The same `seed` gives
+    the same frame.
+    """
     rng = np.random.default_rng(seed)
     table = MaterialTable.empty(C)
     for m in range(C.materials):
@@ -26,8 +31,8 @@ def random_frame(
     s["y"] = rng.integers(0, C.max_size, spans)
     s["material"] = rng.integers(0, C.materials, spans)
     ends = rng.integers(C.normal.min, C.normal.max + 1, (2, spans, 3))
-    up = rng.random(spans) < 0.5
-    ends[..., 2] = np.where(up, np.abs(ends[..., 2]) & C.normal.max, ends[..., 2])
+    lit = rng.random(spans) < 0.5
+    ends[..., 2] = np.where(lit, np.abs(ends[..., 2]) & C.normal.max, ends[..., 2])
     ends >>= rng.integers(0, C.normal.bits, spans)[:, None]
     s["start"] = ends[0]
     s["step"] = (ends[1] - ends[0]) // np.maximum(s["length"] - 1, 4)[:, None]

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: MIT
+"""Every table and every figure that a marker can name, and what makes it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from phong75.model.config import TECHNIQUES
+from phong75.model.studies.methods import CONFIGS
+from phong75.scripts import recorded
+from phong75.scripts.docs import commands, facts, tables
+
+#: Tables that change with date and commit alone: filled, and not compared.
+UNCOMPARED = ("provenance",)
+
+
+def _record(name: str) -> dict[str, Any]:
+    figures = recorded.figures(name)
+    if not figures:
+        raise FileNotFoundError(f"results/{name}.json is missing")
+    return figures
+
+
+def _sweep() -> dict[str, dict[str, Any]]:
+    return _record("sweep")["configurations"]
+
+
+def _clocks() -> dict[str, dict[str, Any]]:
+    return _record("clocks")["configurations"]
+
+
+def _power_error(n: float) -> float:
+    return next(row["max_error"] for row in _record("stability")["powers"] if row["n"] == n)
+
+
+def _synthesis(*path: str) -> Any:
+    found: Any = _record("synth-grade6")
+    for key in path:
+        found = found[key]
+    return found
+
+
+def _mutants(what: str) -> int:
+    files = _record("mutate")["files"]
+    return sum(tables.mutant_totals(files, kind)[what] for kind in ("operator", "constant"))
+
+
+def _shared_clocks() -> list[float]:
+    """Clocks whose longest path starts in a module that all configurations share."""
+    return [
+        of["clock_mhz"] for of in _clocks().values()
+        if of["longest_path"].split()[0] in tables.SHARED
+    ]  # fmt: skip
+
+
+def _quadratic_clocks() -> list[float]:
+    return [of["clock_mhz"] for name, of in _clocks().items() if name.startswith("quadratic_spans")]
+
+
+def _inferred() -> str:
+    """Configurations whose longest path starts in a table, and their clocks."""
+    slow = [
+        (of["clock_mhz"], name)
+        for name, of in _clocks().items()
+        if of["longest_path"].startswith("rom ")
+    ]
+    return ", ".join(f"`{name}` {clock:.0f} MHz" for clock, name in sorted(slow))
+
+
+def _front() -> str:
+    return ", ".join(
+        f"`{name}` ({of['frame_us']:.0f} µs, {of['rms_lsb']:.3f} LSB)"
+        for name, of in tables.front(_sweep())
+    )
+
+
+def _unrouted() -> str:
+    """How many configurations of the sweep have a stated clock, in words."""
+    stated = sum(of["clock_source"] == "stated" for of in _sweep().values())
+    return f"{stated} of {len(_sweep())}" if stated else "none"
+
+
+def summary() -> str:
+    """The README's table of results: what, figure, and where to read on."""
+    scenes, synthesis = _record("scenes"), _record("synth-grade6")
+    formal, coverage = _record("formal"), _record("coverage")
+    used, clock = synthesis["resources"], synthesis["clock_mhz"]
+    runs = [run for of in scenes["scenes"].values() for run in of]
+    slowest = min(scenes["clock_hz"] / of[-1]["cycles"] for of in scenes["scenes"].values())
+    rows = [
+        ("pixels in which RTL and model differ",
+         f"{sum(run['mismatches'] for run in runs)} of "
+         f"{tables.grouped(sum(run['pixels'] for run in runs))} ({len(scenes['scenes'])} scenes, "
+         f"{len(runs) // len(scenes['scenes'])} sizes)", "[results](docs/results.md)"),
+        ("largest error against float64 at the same ports, and its derived bound",
+         f"{tables.worst_scene(scenes, 'max_lsb'):.3f} LSB, "
+         f"{tables.worst_scene(scenes, 'bound_lsb'):.3f} LSB (perfect rounding: 0.5)",
+         "[error budget](docs/architecture.md#error-budget)"),
+        ("throughput, latency",
+         f"one pixel per cycle, {facts.latency('first_pixel')} cycles from a span to its first "
+         "pixel", "[architecture](docs/architecture.md)"),
+        ("frame rate at 1920×1080 and 200 MHz, slowest scene", f"{slowest:.0f} frames/s",
+         "[results](docs/results.md)"),
+        (f"Lattice ECP5 {synthesis['device']}, speed grade 6",
+         f"{clock['median']:.0f} MHz (median of {synthesis['seeds']} placements), {used['dsp']} "
+         f"multipliers 18×18, {used['ebr']} block RAMs, {used['lut_sites']} LUT sites, "
+         f"{used['ff']} flip-flops", "[hardware](docs/studies/hardware.md)"),
+        ("proofs", f"{formal['hold']} of {formal['proofs']} hold; "
+         f"{formal['broken_designs_failing']} of {formal['broken_designs']} broken designs fail",
+         "[verification](docs/verification.md#proofs)"),
+        ("corner cases", f"{len(_record('stability')['rows'])}, "
+         f"{sum(row['verdict'] != 'ok' for row in _record('stability')['rows'])} fail",
+         "[stability](docs/studies/stability.md)"),
+        ("mutants", f"{_mutants('mutants')}, {_mutants('survived')} survive",
+         "[verification](docs/verification.md#mutants)"),
+        ("coverage of `rtl/`", f"lines {coverage['percent']['line']:g} %, branches "
+         f"{coverage['percent']['branch']:g} %", "[verification](docs/verification.md#coverage)"),
+    ]  # fmt: skip
+    return tables.markdown(("what", "figure", "more"), rows, left=3)
+
+
+TABLES: dict[str, Callable[[], str]] = {
+    "summary": summary,
+    "install": lambda: tables.install(_record("install")["rows"]),
+    "diagram": facts.diagram,
+    "latencies": facts.latency_table,
+    "formats": facts.formats,
+    "ports": facts.port_table,
+    "span-word": facts.span_table,
+    "pixel-word": facts.pixel_table,
+    "registers": facts.register_table,
+    "budget": facts.budget,
+    "features": facts.features,
+    "configurations": facts.configurations,
+    "scenes": lambda: tables.scenes(_record("scenes")),
+    "hardware": lambda: tables.hardware(tables.hardware_rows(tables.HARDWARE)),
+    "tests": lambda: tables.hardware(tables.hardware_rows(tables.TESTS)),
+    "speed": lambda: tables.hardware(tables.hardware_rows(tables.SPEED)),
+    "shapes": facts.shapes,
+    "proofs": facts.proofs,
+    "lut-counts": lambda: tables.lut_counts(_synthesis("resources")),
+    "sweep": lambda: tables.sweep(_sweep()),
+    "clocks": lambda: tables.clocks(_clocks()),
+    "surfaces": lambda: tables.surfaces(_record("tessellation")),
+    "error-families": lambda: tables.error_families(_record("stability")["errors"]),
+    "cases": lambda: tables.cases(_record("stability")["rows"], facts.case_words()),
+    "powers": lambda: tables.powers(_record("stability")["powers"]),
+    "pruning": lambda: tables.pruning(_record("prune")["builds"]),
+    "pruning-bars": lambda: tables.pruning_bars(_record("prune")["builds"]),
+    "commands": commands.commands,
+    "targets": commands.targets,
+    "provenance": tables.provenance,
+}
+
+
+def _highlights() -> list[float]:
+    return tables.highlight_ratios(_record("tessellation")["meshes"])
+
+
+FIGURES: dict[str, Callable[[], str]] = {
+    # of the design
+    "latency.first-pixel": lambda: str(facts.latency("first_pixel")),
+    "latency.first-pixel-gouraud": lambda: str(facts.latency("first_pixel", TECHNIQUES["gouraud"])),
+    "multipliers": lambda: str(facts.modules()["multiplier"]),
+    "bound.n32": lambda: facts.above(facts.bound(32)),
+    "bound.n128": lambda: facts.above(facts.bound(128)),
+    "bound.intensity": lambda: facts.above(facts.intensity_bound(), 4),
+    "bound.jump": lambda: facts.above(facts.jump()),
+    "configurations": lambda: str(len(CONFIGS)),
+    # of the records
+    "cases": lambda: str(len(_record("stability")["rows"])),
+    "power.n20": lambda: f"{_power_error(20):.2g}",
+    "power.amm": lambda: f"{_record('stability')['amm_2012_at_20']:g}",
+    "front": _front,
+    "clocks.stated": _unrouted,
+    "clocks.routed": lambda: str(len(_clocks())),
+    "clocks.shared": lambda: str(len(_shared_clocks())),
+    "clocks.shared-low": lambda: f"{min(_shared_clocks()):.0f}",
+    "clocks.shared-high": lambda: f"{max(_shared_clocks()):.0f}",
+    "clocks.inferred": _inferred,
+    "clocks.quadratic-low": lambda: f"{min(_quadratic_clocks()):.0f}",
+    "clocks.quadratic-high": lambda: f"{max(_quadratic_clocks()):.0f}",
+    "highlight.low": lambda: f"{min(_highlights()):.0f}",
+    "highlight.high": lambda: f"{max(_highlights()):.0f}",
+}

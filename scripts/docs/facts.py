@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: MIT
+"""What the documentation says of the design itself: latencies, formats, bounds, counts.
+
+Nothing is measured here: all of it follows from the configuration, the elaborated design and the
+derived error budget.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import inspect
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+
+from phong75.model import config as config_module
+from phong75.model import registers, spans
+from phong75.model.analysis import error_budget
+from phong75.model.analysis.pruning import prune
+from phong75.model.config import DEFAULT as C
+from phong75.model.config import TECHNIQUES, Config, Format
+from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
+from phong75.model.front.scene import SHAPES
+from phong75.model.studies import corner_cases
+from phong75.model.studies.methods import points
+from phong75.scripts.docs.tables import markdown
+from phong75.scripts.export import documents
+from phong75.sim.elaborate import instances
+from phong75.sim.formal.proofs import PROOFS
+from phong75.sim.latency import latencies
+
+#: Registers between the walker's input and the pixel's output around `latencies()["pixel"]`: the
+#: span accepted, the slot written, the slot read.
+AROUND = 3
+
+
+@functools.cache
+def modules(config: Config = C) -> dict[str, int]:
+    """{module: instances} of the elaborated `config`."""
+    return dict(instances(config))
+
+
+def latency(block: str, config: Config = C) -> int:
+    """Cycles of `block`; "first_pixel" is from an accepted span to its first pixel."""
+    if block == "first_pixel":
+        return latencies(config)["pixel"] + AROUND
+    return latencies(config)[block]
+
+
+def diagram() -> str:
+    """The blocks in the order of the data, with their latencies in cycles."""
+    cycles = latencies()
+    head = (
+        (" spans ─► ", " cycles:"), ("span_walker, interpolators ×3", "1"), (" ─► ", ""),
+        ("normalizer", f"{cycles['normalizer']}"), (" ─► ", ""),
+        ("shading_unit", f"{cycles['shading_unit']}"), (" ─► ", ""), ("pixel_fifo", "2"),
+        (" ─► pixels", ""),
+    )  # fmt: skip
+    names = "".join(name for name, _ in head)
+    below = "".join(number.center(len(name)) for name, number in head).rstrip()
+    rest = cycles["normalizer"] - cycles["align"] - cycles["inverse_sqrt_linear"]
+    lines = [
+        names, below, "",
+        f" normalizer     align to the largest component ({cycles['align']}) · "
+        f"inverse_sqrt_linear ({cycles['inverse_sqrt_linear']}) ·",
+        f"                squares, sum, scale, round ({rest})",
+        f" shading_unit   reflection ({cycles['reflection']}): 1 − cos(s) · "
+        f"specular_power_tables ({cycles['specular_power_tables']}): cos(s)^n ·",
+        f"                colour_channel ×3 ({cycles['colour_channel']}): eq. (3), clamp, code;",
+        f"                in parallel: specular_weight ({cycles['specular_weight']}): W(i)",
+    ]  # fmt: skip
+    return "```text\n" + "\n".join(lines) + "\n```"
+
+
+def latency_table() -> str:
+    """Every block with a latency of its own in the default configuration."""
+    used = modules()
+    rows = [(f"`{block}`", str(n)) for block, n in latencies().items() if block in used]
+    pixel = latencies()["pixel"]
+    rows.append(("`PHONG_PIXEL_LATENCY`: from an interpolated normal to its colour", str(pixel)))
+    rows.append(("from an accepted span to its first pixel", str(latency("first_pixel"))))
+    return markdown(("block", "latency, cycles"), rows)
+
+
+# -- formats ---------------------------------------------------------------------------------------
+
+
+def _comments() -> dict[str, str]:
+    """{field of Config: the comment behind it}."""
+    source = Path(config_module.__file__).read_text()
+    fields = re.findall(r"^    (\w+): [^#\n]*?(?:  # (.*))?((?:\n    #   .*)*)$", source, re.M)
+    return {
+        name: re.sub(r"\s*\n\s*#\s*", " ", first + more).strip() for name, first, more in fields
+    }
+
+
+def formats() -> str:
+    """Every fixed-point format of the default configuration."""
+    comments = _comments()
+    rows = [
+        (f"`{field.name}`", f"{value}", comments.get(field.name, "").replace("|", "\\|"))
+        for field in dataclasses.fields(C)
+        if isinstance(value := getattr(C, field.name), Format)
+    ]
+    return markdown(("field of `Config`", "format", "what"), rows, left=3)
+
+
+def port_table(config: Config = C) -> str:
+    """The ports of `phong_pipeline`, in the order of its declaration."""
+    rows = (
+        (f"`{port.name}`", port.direction, str(port.bits), port.meaning)
+        for port in documents.ports(config)
+    )
+    return markdown(("port", "direction", "bits", "meaning"), rows, left=4)
+
+
+def span_table(config: Config = C) -> str:
+    """The fields of a span word, from bit 0 upwards."""
+    fields = [f for f in spans.span_fields(config) if f.name != "last"]
+    rows = []
+    for f in fields:
+        carried = f.name.startswith(("start_", "step_"))
+        squared = f.name not in ("x", "y", "length", "material") and not carried
+        meaning = str(config.normal if carried else config.squared if squared else "whole number")
+        rows.append((f"`{f.name}`", f"{f.lsb + f.bits - 1}:{f.lsb}", meaning))
+    return markdown(("field", "bits of `s_axis_tdata`", "format"), rows, left=3)
+
+
+def pixel_table(config: Config = C) -> str:
+    """The fields of a pixel word, from bit 0 upwards."""
+    rows, lsb = [], 0
+    colour, place = config.colour_bits, config.coordinate_bits
+    for name, bits in (
+        ("blue", colour),
+        ("green", colour),
+        ("red", colour),
+        ("x", place),
+        ("y", place),
+    ):
+        rows.append((f"`{name}`", f"{lsb + bits - 1}:{lsb}"))
+        lsb += bits
+    return markdown(("field", "bits of `m_axis_tdata`"), rows, left=2)
+
+
+def register_table(config: Config = C) -> str:
+    """The address map of the write port."""
+    field, c = registers.FIELDS, config.coefficient
+    intervals = config.weight_points - 1
+    rows = [
+        ("`{0, material, k}`",
+         f"interval k of {intervals} of W(i), equally spaced in Zn: {{W(k+1) − W(k) "
+         f"(s{c.integer}.{c.fraction}), W(k) ({c})}}"),
+        (f"`{{1, material, {field['ambient']}…{field['ambient'] + 2}}}`",
+         f"Cp·d of red, green, blue ({c})"),
+        (f"`{{1, material, {field['diffuse']}…{field['diffuse'] + 2}}}`",
+         f"Cp·(1 − d) of red, green, blue ({c})"),
+        (f"`{{1, material, {field['exponent']}}}`", f"n ({config.exponent}), 1 to 128"),
+        (f"`{{1, any, {field['half_x']}}}`, `{{1, any, {field['half_z']}}}`",
+         f"hx, hz ({config.half_vector}): h = (sin ½a, 0, cos ½a) for an eye at angle a from the "
+         "light"),
+        (f"`{{1, any, {field['control']}}}`", "bit 0: two-sided, shade \\|Zn\\|"),
+    ]  # fmt: skip
+    return markdown(("address", "contents"), rows, left=2)
+
+
+# -- the error budget ------------------------------------------------------------------------------
+
+
+def _frame(angle: float, n: float, weight=1.0) -> Frame:
+    """No spans that matter, one white material, the eye at `angle` (radians) from the light."""
+    table = MaterialTable.empty(C)
+    table.set(0, (1.0, 1.0, 1.0), 0.0, np.broadcast_to(weight, C.weight_points), n, C)
+    eye = np.array([np.sin(angle), 0, np.cos(angle)])
+    return Frame(1, 1, half_vector_codes(eye, C), False, (0, 0, 0), table, np.zeros(1, SPAN_DTYPE))
+
+
+@functools.cache
+def bound(n: float) -> float:
+    """The derived bound in LSB for exponents up to `n` and W constant, over all angles."""
+    return max(error_budget.bound_lsb(_frame(a, n)) for a in np.linspace(0, np.pi, 33))
+
+
+@functools.cache
+def jump(n: float = 32) -> float:
+    """What a jump of W from 0 to 1 adds to the bound, LSB."""
+    weight = np.where(np.arange(C.weight_points) < C.weight_points // 2, 0.0, 1.0)
+    return error_budget.bound_lsb(_frame(0.5, n, weight)) - bound(n)
+
+
+def intensity_bound() -> float:
+    """The bound in LSB of Gouraud and flat shading against the interpolated intensity."""
+    return error_budget.bound_lsb(_frame(0.5, 1), TECHNIQUES["gouraud"])
+
+
+def above(value: float, digits: int = 2) -> str:
+    """`value` rounded up: a bound stays one."""
+    return f"{math.ceil(value * 10**digits) / 10**digits:.{digits}f}"
+
+
+def budget() -> str:
+    """The error budget of a white material with n = 10 and W = 1, stage by stage."""
+    rows = error_budget.rows(0, _frame(1.0, 10.0))
+    cells = ((row.stage, f"{row.bound:.3g}", row.why.replace("|", "\\|")) for row in rows)
+    return markdown(("stage", "bound", "why"), ((a, b, c) for a, b, c in cells), left=3)
+
+
+# -- scenes and proofs -----------------------------------------------------------------------------
+
+
+def shapes() -> str:
+    """The bundled shapes and their parameters, as scene files name them."""
+    rows = []
+    for name, make in SHAPES.items():
+        given = inspect.signature(make).parameters.values()
+        rows.append((f"`{name}`", ", ".join(f"`{p.name}` ({p.default:g})" for p in given)))
+    return markdown(("shape", "parameters (default)"), rows, left=2)
+
+
+MODES = {
+    "prove": "unbounded induction", "bmc": "bounded", "cover": "reachable",
+    "structure": "netlist structure",
+}  # fmt: skip
+
+
+def proofs() -> str:
+    """What is proven, of which size, and how many broken designs must fail."""
+    rows = (
+        (proof.name, proof.claim, proof.size, MODES[proof.mode], str(len(proof.broken_designs)))
+        for proof in PROOFS
+    )
+    return markdown(("proof", "claim", "size", "kind", "broken designs"), rows, left=4)
+
+
+#: The cases of `make stability` that are no frame of `corner_cases`: (what is extreme, expected).
+OTHER_CASES = {
+    "shared edges": ("random triangulations of rectangles", "every pixel once, no other"),
+    "cos(s)ⁿ alone": ("every code of 1 − cos(s), for several n", "within the derived bounds"),
+    "long run": ("random spans under random pauses and resets", "every pixel, in order"),
+}
+
+
+def case_words() -> dict[str, tuple[str, str]]:
+    """{corner case: (what is extreme, what is expected)}."""
+    words = {case.name: (case.extreme, case.expected) for case in corner_cases.cases()}
+    return words | OTHER_CASES
+
+
+# -- configurations --------------------------------------------------------------------------------
+
+
+def configurations() -> str:
+    """Every named configuration of the sweep, and the techniques."""
+    rows = [(f"`{p.config.name}`", p.method, p.label) for p in points()]
+    rows += [(f"`{name}`", "technique", name) for name in TECHNIQUES if name != "phong"]
+    return markdown(("configuration", "method", "size"), rows, left=3)
+
+
+def features() -> str:
+    """The fields of Config that pruning decides on, and what a build lacks without each."""
+    rows = ((f"`{row.feature}`", row.saves) for row in prune(_frame(1.0, 10.0))[1])
+    return markdown(("field of `Config`", "without it go"), rows, left=2)

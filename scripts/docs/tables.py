@@ -1,0 +1,491 @@
+# SPDX-License-Identifier: MIT
+"""Tables of docs/ and README.md, as Markdown, from the records in results/.
+
+A record holds numbers and names; what a table says beside them is written here. A figure that was
+not measured is a dash.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from phong75.model.studies.charts import pareto
+from phong75.scripts import recorded
+
+DASH = "–"
+
+
+def markdown(header: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1) -> str:
+    """A table of `rows` under `header`; the first `left` columns are text, the others numbers."""
+    rules = ["---"] * left + ["--:"] * (len(header) - left)
+    lines = [header, rules, *rows]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+
+
+def number(value: float | None, digits: int = 0) -> str:
+    """`value` with `digits` decimals, or a dash."""
+    return DASH if value is None else f"{value:.{digits}f}"
+
+
+def grouped(value: int) -> str:
+    """A whole number with thin groups of three digits: 1 234 567."""
+    return f"{value:,}".replace(",", "\u202f")
+
+
+def logic(records: Iterable[dict[str, Any]]) -> tuple[str, str]:
+    """(key, title) of the column that counts the logic of `records`: LUT sites, or LUT cells where
+    only Yosys's count was kept of one of them. One table, one count."""
+    some = any(r.get("lut_cells") is not None and r.get("lut_sites") is None for r in records)
+    return ("lut_cells", "LUT cells (Yosys)") if some else ("lut_sites", "LUT sites")
+
+
+# -- scenes ----------------------------------------------------------------------------------------
+
+
+def scenes(record: dict[str, Any]) -> str:
+    """Every bundled scene: the largest size's counts, the worst errors of all sizes."""
+    rows = []
+    for name, runs in record["scenes"].items():
+        large = runs[-1]
+        rows.append((
+            name, str(large["pixels"]), str(large["spans"]),
+            str(sum(run["mismatches"] for run in runs)),
+            number(max(run["max_lsb"] for run in runs), 3),
+            number(max(run["bound_lsb"] for run in runs), 3),
+            f"{100 * min(run['correctly_rounded'] for run in runs):.2f} %",
+            number(large["cycles"] / large["pixels"], 4),
+            ", ".join(number(record["clock_hz"] / run["cycles"]) for run in runs),
+        ))  # fmt: skip
+    header = (
+        "scene", "pixels", "spans", "RTL ≠ model", "largest error, LSB", "bound, LSB",
+        "rounded correctly", "cycles per pixel", "frames/s",
+    )  # fmt: skip
+    return markdown(header, rows)
+
+
+def worst_scene(record: dict[str, Any], figure: str) -> float:
+    """The largest `figure` of all runs of all scenes."""
+    return max(run[figure] for runs in record["scenes"].values() for run in runs)
+
+
+# -- hardware, proofs, tests -----------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class HardwareRow:
+    """A line of the table of long runs: what was measured, the figure, the command that measures
+    it, and what the figure does not mean. `record` is the name of its record."""
+
+    what: str
+    figure: str
+    command: str
+    caveat: str
+    record: str
+
+
+def _synthesis(found: dict[str, Any]) -> list[tuple[str, str, str]]:
+    clock, used = found["clock_mhz"], found.get("resources", {})
+    chip = f"Lattice ECP5 {found['device']}, speed grade {found['grade']}"
+    rows = [(
+        f"clock on a {chip}",
+        f"{clock['median']} MHz, median of {found['seeds']} placements; best {clock['best']} MHz",
+        f"a timing estimate by nextpnr, not a measured chip; clamped to the {found['limit_by']}'s "
+        f"limit of {found['limit_mhz']} MHz, which nextpnr does not check",
+    )]  # fmt: skip
+    if used and found["grade"] == 6:
+        rows += [
+            ("multipliers and block RAMs", f"{used['dsp']} MULT18X18D, {used['ebr']} DP16KD",
+             "without the harness of shift registers that stands in for pins"),
+            ("logic", f"{used['lut_sites']} LUT sites, {used['ff']} flip-flops",
+             f"Yosys counts {used['lut']} LUT4, {used['carry']} carry cells and {used['lut_ram']} "
+             "LUT RAM cells in them; the glossary defines a LUT site"),
+        ]  # fmt: skip
+    if gates := found.get("gate_equivalents"):
+        rows.append((
+            "gate equivalents (NAND2)", str(gates),
+            "Oklahoma State University's 0.18 µm cells; without the three ROMs and the RAM of the "
+            "tables, without clock tree and wires: not an area",
+        ))  # fmt: skip
+    return rows
+
+
+def _netlist(found: dict[str, Any]) -> list[tuple[str, str, str]]:
+    models = "the models of MULT18X18D and DP16KD are this project's, those of other cells Yosys's"
+    return [
+        ("whole frames through the netlist of ECP5 cells",
+         f"{found['frames']} frames, {grouped(found['pixels'])} pixels, {found['mismatches']} "
+         "differ from the model", models),
+        ("corner cases through the same netlist, registers zero and random at power-up",
+         f"{found['cases']} cases, {found['complaints']} failures", models),
+    ]  # fmt: skip
+
+
+def _icarus(found: dict[str, Any]) -> list[tuple[str, str, str]]:
+    return [(
+        "module tests with X in every register at power-up",
+        f"{found['tests']} tests, {found['complaints']} failures",
+        f"Icarus Verilog {found['icarus_version']}; one in {found['one_vector_in']} of the "
+        "datapath's test vectors",
+    )]  # fmt: skip
+
+
+def _formal(found: dict[str, Any]) -> list[tuple[str, str, str]]:
+    return [(
+        "proofs of flow control, interpolators and pruned modules",
+        f"{found['hold']} of {found['proofs']} hold, {found['unbounded']} of them by unbounded "
+        f"induction; {found['broken_designs_failing']} of {found['broken_designs']} broken "
+        "designs fail",
+        "order, loss, stalls and overflow; not colours. The pipeline as a whole is proven for the "
+        "first 10 cycles",
+    )]  # fmt: skip
+
+
+def _coverage(found: dict[str, Any]) -> list[tuple[str, str, str]]:
+    percent = found["percent"]
+    return [(
+        "coverage of `rtl/`",
+        f"lines {percent['line']:g} %, branches {percent['branch']:g} %, toggles "
+        f"{percent['toggle']:g} %",
+        f"by module tests, frame tests and configuration tests; {found['waived_lines']} lines are "
+        "waived: a function that runs at elaboration only",
+    )]  # fmt: skip
+
+
+def mutant_totals(files: dict[str, Any], kind: str) -> dict[str, int]:
+    """Sums over all `files` of the mutants of `kind` ("operator" or "constant")."""
+    entries = [kinds[kind] for kinds in files.values() if kind in kinds]
+    names = ("mutants", "killed", "refused", "equivalent", "survived")
+    return {"files": len(entries)} | {name: sum(e[name] for e in entries) for name in names}
+
+
+def _mutants(found: dict[str, Any]) -> list[tuple[str, str, str]]:
+    rows = []
+    for kind, what in (
+        ("operator", "mutants: each operator of `rtl/` changed"),
+        ("constant", "mutants: each hand-written constant of `rtl/` changed by one"),
+    ):
+        of = mutant_totals(found["files"], kind)
+        rows.append((
+            what,
+            f"{of['mutants']}: {of['killed']} fail a test, {of['refused']} fail the lint, "
+            f"{of['equivalent']} are the same hardware, {of['survived']} survive",
+            f"of {of['files']} files; `tests/campaigns/equivalent_mutants.txt` gives the reason "
+            "why a mutant is the same hardware",
+        ))  # fmt: skip
+    return rows
+
+
+def _random_scenes(found: dict[str, Any]) -> list[tuple[str, str, str]]:
+    return [(
+        "random scenes, each on the build pruned to it, against the full model",
+        f"{found['scenes']} scenes, {found['builds']} builds, {grouped(found['pixels'])} pixels, "
+        f"{found['complaints']} failures",
+        "random spans, not meshes",
+    )]  # fmt: skip
+
+
+def _activity(found: dict[str, Any]) -> list[tuple[str, str, str]]:
+    def toggles(name: str) -> str:
+        return ", ".join(f"{scene} {of[name]:.0f}" for scene, of in found["scenes"].items())
+
+    return [
+        ("register toggles per pixel, 640×480", toggles("toggles_per_pixel"),
+         "registers only; not joules"),
+        ("the same with `hold_unlit`: pixels turned away from the light hold the datapath",
+         toggles("hold_unlit"), "takes one cycle and about 120 registers more; off by default"),
+    ]  # fmt: skip
+
+
+def _benchmark(found: dict[str, Any]) -> list[tuple[str, str, str]]:
+    return [
+        ("simulation speed under cocotb, as a share of a bare Verilator loop",
+         number(found["cocotb_to_bare"], 2), "one machine"),
+        ("the numpy model, 640×480 lit pixels",
+         f"{found['model_frames_per_s']:.0f} frames/s on one core",
+         "one machine; the pixel stages only"),
+    ]  # fmt: skip
+
+
+#: The records of the table of long runs, in its order, and what makes lines of each.
+LONG_RUNS: dict[str, Callable[[dict[str, Any]], list[tuple[str, str, str]]]] = {
+    "synth-grade6": _synthesis, "synth-grade8": _synthesis, "netlist": _netlist,
+    "icarus": _icarus, "formal": _formal, "coverage": _coverage, "mutate": _mutants,
+    "prune-random": _random_scenes, "activity": _activity, "bench": _benchmark,
+}  # fmt: skip
+
+
+#: Which of them docs/ shows where.
+HARDWARE = ("synth-grade6", "synth-grade8", "activity")
+TESTS = ("netlist", "icarus", "formal", "coverage", "mutate", "prune-random")
+SPEED = ("bench",)
+
+
+def hardware_rows(names: Iterable[str] = tuple(LONG_RUNS)) -> list[HardwareRow]:
+    """The lines of the long runs `names` that have a record."""
+    rows = []
+    for name in names:
+        lines = LONG_RUNS[name]
+        if record := recorded.load(name):
+            rows += [
+                HardwareRow(what, figure, record["command"], caveat, name)
+                for what, figure, caveat in lines(record["figures"])
+            ]
+    return rows
+
+
+def hardware(rows: Iterable[HardwareRow]) -> str:
+    """The table of long runs."""
+    header = ("what", "figure", "command", "what it does not mean")
+    cells = ((row.what, row.figure, f"`{row.command}`", row.caveat) for row in rows)
+    return markdown(header, cells, left=len(header))
+
+
+def lut_counts(resources: dict[str, int]) -> str:
+    """How the two counts of logic come from the same cells."""
+    lut, carry, ram = (resources[name] for name in ("lut", "carry", "lut_ram"))
+    cells = lut + 2 * carry + 4 * ram
+    sites = resources["lut_sites"]
+    rows = [
+        ("LUT4", str(lut), "1", str(lut)),
+        ("carry cell (CCU2C)", str(carry), "2", str(2 * carry)),
+        ("LUT RAM cell (TRELLIS_DPR16X4)", str(ram), "4", str(4 * ram)),
+        ("**LUT cells (Yosys)**", "", "", f"**{cells}**"),
+        ("write port of a LUT RAM cell", str(ram), "2", str(2 * ram)),
+        ("carry into or out of a chain", str((sites - cells - 2 * ram) // 2), "2",
+         str(sites - cells - 2 * ram)),
+        ("**LUT sites**", "", "", f"**{sites}**"),
+    ]  # fmt: skip
+    return markdown(("what", "how many", "sites each", "sites"), rows)
+
+
+# -- error against run time ------------------------------------------------------------------------
+
+#: The configurations that the table shows: what a designer would choose between.
+SHOWN = (
+    "default", "quadratic_spans_18", "dot_first_18", "table_2048", "lines_32", "parabolas_8",
+    "table_128_newton", "fast_inverse_1", "fast_inverse_2", "not_normalized", "power_tables_32",
+    "squaring_18", "schlick_18", "interpolator_16", "interpolator_20", "width_14", "width_10",
+)  # fmt: skip
+
+
+def sweep(configurations: dict[str, dict[str, Any]]) -> str:
+    """The configurations `SHOWN` of a sweep. Bounds are of the error against the port integers."""
+    rows = []
+    key, title = logic(configurations[name] for name in SHOWN)
+    for name in SHOWN:
+        of = configurations[name]
+        stated = " (stated)" if of["clock_source"] == "stated" else ""
+        rows.append((
+            f"`{name}`", f"{of['method']}, {of['label']}", str(of["multipliers"]),
+            number(of.get(key)), str(of["latency_cycles"]),
+            f"{number(of['clock_mhz'])}{stated}", number(of["frame_us"]),
+            number(of["rms_lsb"], 3), number(of["max_lsb"], 2),
+            "none derived" if of["bound_lsb"] is None else number(of["bound_lsb"], 2),
+            f"{100 * of['correctly_rounded']:.2f} %",
+        ))  # fmt: skip
+    header = (
+        "configuration", "method, size", "multipliers", title, "latency, cycles", "clock, MHz",
+        "frames, µs", "RMS error, LSB", "largest error, LSB", "bound, LSB",
+        "rounded correctly",
+    )  # fmt: skip
+    return markdown(header, rows, left=2)
+
+
+def front(configurations: dict[str, dict[str, Any]]) -> list[tuple[str, dict[str, Any]]]:
+    """The Pareto front of RMS error and run time, the fastest first.
+
+    Errors count to a thousandth of an LSB: a smaller difference cannot be seen.
+    """
+    items = list(configurations.items())
+    errors = [round(of["rms_lsb"], 3) for _, of in items]
+    kept = pareto([of["frame_us"] for _, of in items], errors)
+    return sorted(
+        (item for item, on in zip(items, kept, strict=True) if on),
+        key=lambda item: item[1]["frame_us"],
+    )
+
+
+#: Modules that every configuration shares: a longest path from one of them says nothing about the
+#: method.
+SHARED = ("span_walker", "pixel_fifo", "phong_pipeline", "phong_unit", "harness")
+
+
+def clocks(configurations: dict[str, dict[str, Any]]) -> str:
+    """Every routed clock that is kept, the slowest first, and where its longest path leads."""
+    rows = [
+        (f"`{name}`", of["longest_path"], number(of["clock_mhz"], 1))
+        for name, of in sorted(configurations.items(), key=lambda item: item[1]["clock_mhz"])
+    ]
+    return markdown(("configuration", "longest path", "clock, MHz"), rows, left=2)
+
+
+# -- true surfaces ---------------------------------------------------------------------------------
+
+
+def surfaces(record: dict[str, Any]) -> str:
+    """Errors against true surfaces, and the paper's claims as numbers."""
+    methods = ("flat", "gouraud", "phong", "cubic")
+    rows: list[tuple[str, ...]] = []
+
+    def line(mesh: str, what: str, values: Sequence[float | str | None]) -> None:
+        cells = [number(v, 2) if isinstance(v, float) else v or "" for v in values]
+        rows.append((mesh, what, *cells, *[""] * (len(methods) - len(cells))))
+
+    for shape, by in _by_shape(record["meshes"]).items():
+        mesh = f"{shape}, {by['flat']['triangles']} triangles"
+        line(mesh, "RMS error, LSB", [by[m]["method_rms_lsb"] for m in methods])
+        line("", "RMS error in the highlight, LSB", [by[m]["highlight_rms_lsb"] for m in methods])
+        orders = record["orders"][shape]
+        line("", "order of convergence", [orders[m]["facing_rms"] for m in methods])
+        jumps = record["mach_bands"][shape][str(by["flat"]["level"])]
+        slopes = [jumps[m]["slope_mean"] for m in ("gouraud", "phong")]
+        line("", "jump of the slope at edges, LSB per pixel", ["not smooth", *slopes])
+    for shape, by in record["flicker"].items():
+        mesh = f"{shape}, turning into itself"
+        line(mesh, "RMS change per degree, LSB", [by[m]["change_rms"] for m in methods[:3]])
+        peaks = ["{} to {}".format(*by[m]["peak_range"]) for m in methods[:3]]
+        line("", "brightest code, over all pictures", peaks)
+    for kind, name in (("quadrilateral", "square as one polygon"), ("triangles", "two triangles")):
+        spread = record["orientation"][kind]["largest_spread_lsb"]
+        line(name, "largest dependence on orientation, LSB", [None, spread])
+    header = ("mesh", "what", "flat", "Gouraud", "Phong", "cubic (model only)")
+    return markdown(header, rows, left=2)
+
+
+def _by_shape(meshes: Iterable[dict[str, Any]]) -> dict[str, dict[str, dict[str, Any]]]:
+    found: dict[str, dict[str, dict[str, Any]]] = {}
+    for row in meshes:
+        found.setdefault(row["shape"], {})[row["technique"]] = row
+    return found
+
+
+def highlight_ratios(meshes: Iterable[dict[str, Any]]) -> list[float]:
+    """Gouraud's RMS error in the highlight as a multiple of Phong's, for each shape."""
+    name = "highlight_rms_lsb"
+    return [by["gouraud"][name] / by["phong"][name] for by in _by_shape(meshes).values()]
+
+
+# -- stability -------------------------------------------------------------------------------------
+
+
+def error_families(rows: Iterable[dict[str, Any]]) -> str:
+    """The largest errors: derived, of the bundled scenes, and of the worst input found."""
+    names = ("bound_lsb", "scenes_lsb", "adversarial_lsb")
+    cells = ((row["family"], *(number(row[name], 3) for name in names)) for row in rows)
+    header = ("inputs", "derived bound, LSB", "bundled scenes, LSB", "worst input found, LSB")
+    return markdown(header, cells)
+
+
+def cases(rows: Iterable[dict[str, Any]], words: dict[str, tuple[str, str]]) -> str:
+    """Every corner case, and what came out of the RTL. words: {case: (extreme, expected)}."""
+    cells = (
+        (row["case"], *words.get(row["case"], ("", "")),
+         DASH if row["pixels"] is None else grouped(row["pixels"]),
+         number(row["max_lsb"], 3), number(row["bound_lsb"], 3),
+         DASH if row["mismatches"] is None else str(row["mismatches"]), row["verdict"])
+        for row in rows
+    )  # fmt: skip
+    header = (
+        "case", "what is extreme", "expected", "pixels", "largest error, LSB", "bound, LSB",
+        "RTL ≠ model", "verdict",
+    )  # fmt: skip
+    return markdown(header, ([cell.replace("|", "\\|") for cell in row] for row in cells), left=3)
+
+
+def powers(rows: Iterable[dict[str, Any]]) -> str:
+    """The error of cos(s)^n alone."""
+    cells = ((f"{row['n']:g}", f"{row['max_error']:.2g}", f"{row['bound']:.2g}") for row in rows)
+    return markdown(("n", "largest error", "derived bound"), cells, left=0)
+
+
+# -- leaving out -----------------------------------------------------------------------------------
+
+#: Columns of the table of pruned builds as keys of a record, in order. "logic" stands for the key
+#: that `logic` chooses; the column of the constant multipliers is the second.
+PRUNING = (
+    "dsp", "logic", "ff", "ebr", "gate_equivalents", "latency", "clock_mhz",
+    "simulation_clocks_per_s", "toggles_per_pixel",
+)  # fmt: skip
+
+
+def pruning_row(
+    name: str, pruned: dict[str, Any], full: dict[str, Any], counted: str = "lut_sites"
+) -> list[str]:
+    """The cells of a build: each figure, and percent of the full design. counted: see `logic`."""
+    cells = []
+    for column in PRUNING:
+        key = counted if column == "logic" else column
+        value = pruned[key]
+        if value is None:
+            cells.append(DASH)
+            continue
+        percent = f"{100 * value / full[key]:.0f} %" if full[key] else DASH
+        speed = key == "simulation_clocks_per_s"
+        cells.append(f"{value / 1e6:.2f} M/s ({percent})" if speed else f"{value:.0f} ({percent})")
+    count, trees = pruned["constant_multipliers"], pruned["constant_lut_cells"]
+    return [name, cells[0], f"{count}, {trees}" if count else "0", *cells[1:]]
+
+
+def pruning(builds: list[dict[str, Any]]) -> str:
+    """All pruned builds; the full design, on the teapot, first."""
+    full = next(build["full"] for build in builds if build["name"] == "teapot")
+    key, title = logic(build[which] for build in builds for which in ("pruned", "full"))
+    rows = [pruning_row("everything", full, full, key)]
+    rows += [pruning_row(build["name"], build["pruned"], build["full"], key) for build in builds]
+    header = (
+        "scene or configuration", "multipliers", "constant multipliers, their LUT cells (Yosys)",
+        title, "flip-flops", "block RAMs", "gate equivalents", "latency, cycles",
+        "clock, MHz", "simulation, cycles/s", "toggles per pixel",
+    )  # fmt: skip
+    return markdown(header, rows)
+
+
+def pruning_bars(builds: list[dict[str, Any]]) -> str:
+    """What the tests hold the pruned builds to, and the figures."""
+    of = {build["name"]: build for build in builds}
+    dsp = {name: build["pruned"]["dsp"] for name, build in of.items()}
+    full = of["teapot"]["full"]["dsp"]
+    speed = "simulation_clocks_per_s"
+    rate = {name: build["pruned"][speed] / build["full"][speed] for name, build in of.items()}
+    slowest = min(rate, key=lambda name: rate[name])
+    rows = [
+        ("*diffuse*: at most 8 multipliers", f"{dsp['diffuse']}"),
+        ("*diffuse grey*: at most 6 multipliers", f"{dsp['diffuse grey']}"),
+        ("*gouraud* and *flat*: no multiplier", f"{dsp['gouraud']} and {dsp['flat']}"),
+        ("teapot: at least a quarter fewer multipliers than the full design",
+         f"{dsp['teapot']} of {full}: {100 * (1 - dsp['teapot'] / full):.0f} % fewer"),
+        ("no pruned build simulates slower than the full design",
+         f"the slowest, *{slowest}*, reaches {100 * rate[slowest]:.1f} % of its cycles per second"),
+    ]  # fmt: skip
+    return markdown(("requirement", "figure"), rows, left=2)
+
+
+# -- installing, and where the figures come from ---------------------------------------------------
+
+
+def install(rows: Iterable[dict[str, Any]]) -> str:
+    """What a command installs and how long it takes, at the first call and later."""
+    cells = (
+        (f"`{row['command']}`", row["installs"], number(row["download_mb"]),
+         number(row["installed_mb"]), number(row["first_minutes"], 1), number(row["minutes"], 1))
+        for row in rows
+    )  # fmt: skip
+    header = (
+        "command", "installs", "download, MB", "on disk, MB", "first call, minutes",
+        "later calls, minutes",
+    )  # fmt: skip
+    return markdown(header, cells, left=2)
+
+
+def provenance() -> str:
+    """Command, tools, date and commit of every record. `+`: with changes since that commit."""
+    rows = []
+    for path in sorted(recorded.FOLDER.glob("*.json")):
+        record = recorded.load(path.stem)
+        if record is None or "figures" not in record:  # the tests' durations
+            continue
+        tools = ", ".join(f"{name} {version}" for name, version in record["tools"].items())
+        rows.append((path.stem, f"`{record['command']}`", tools, record["date"], record["commit"]))
+    return markdown(("record", "command", "tools", "date", "commit"), rows, left=5)
