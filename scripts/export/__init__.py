@@ -30,6 +30,7 @@ from phong75.model.verilog import header
 from phong75.scripts.export import documents, stimulus, verilog
 from phong75.sim import design
 from phong75.sim.build import BuildError
+from phong75.sim.elaborate import instances
 
 #: What the stimulus shows unless a scene is named, and its size unless one is given.
 SCENE, SIZE = "still_life", (48, 32)
@@ -136,7 +137,7 @@ def _check(frame: Frame, config: Config, scene: str) -> None:
 
 def _files(config: Config, prefix: str, frame: Frame, shown: str, pruned: bool) -> dict[str, str]:
     """{path in the export: text} of everything but the manifest. Raises BuildError."""
-    values = verilog.macros(config)
+    values, present = verilog.macros(config), instances(config)
     version = phong75.__version__
     modules = {file.stem for file in design.sources()}
     modules |= {file.stem for file in design.sources(technology=design.ECP5)}
@@ -155,9 +156,9 @@ def _files(config: Config, prefix: str, frame: Frame, shown: str, pruned: bool) 
         return paths
 
     about = f"// Phong75 {version}, configuration {config.name}"
-    listed = put(verilog.used(config))
+    listed = put(verilog.used(present))
     files["rtl.f"] = _listed(f"{about}: the design", listed)
-    chip = put(verilog.used(config, design.ECP5))
+    chip = put(verilog.used(present, design.ECP5))
     ecp5 = chip != listed
     if ecp5:
         files["rtl_ecp5.f"] = _listed(f"{about}: the design for a Lattice ECP5", chip)
