@@ -1,171 +1,216 @@
-# Every target does its own set-up. `make` or `make help` lists them.
-
-SCENE ?= teapot
-SIZE ?=
-FPS ?= 30
-CLOCK_MHZ ?= 200
-OUT ?=
-SPANS ?=
-TECHNIQUE ?= phong
-PRUNE ?=
-MODULE ?= phong_pipeline
-CONFIG ?= default
-GRADE ?= 6
-SEEDS ?= 3
-AREA ?=
-ROUTE ?=
-GATES ?=
+# SPDX-License-Identifier: MIT
+# `make TARGET VARIABLE=value` forwards to `phong75 COMMAND --option value`; every target does its own
+# set-up. `make` or `make help` lists the targets.
 
 PYTHON := .venv/bin/python
-# An argument for the shell, whatever is in it.
-quote = '$(subst ','\'',$(1))'
+PHONG75 := $(PYTHON) -m phong75.scripts.main
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run prune check test lint results bench sweep tessellation synth netlist icarus formal coverage activity mutate \
-  hardware waves clean
 
-help: ## this list
-	@echo 'make run      render SCENE through the RTL and the model, compare, write pictures and report'
-	@echo '                SCENE=teapot    a bundled scene, or a path to a scene file or a mesh'
-	@echo '                SIZE=640x480    width x height; else the size that the scene gives'
-	@echo '                TECHNIQUE=phong interpolates normals; or gouraud, flat'
-	@echo '                FPS=30          frames a second that the cycle budget is checked for'
-	@echo '                CLOCK_MHZ=200   clock of the hardware'
-	@echo '                OUT=build/NAME  folder of the results; NAME is that of the scene (and technique)'
-	@echo '                SPANS=FILE      run a span file (see model/spans.py) in place of a scene'
-	@echo '                PRUNE=1         build without what the scene does not need; or PRUNE=SCENE:'
-	@echo '                                without what that one does not need'
-	@echo 'make prune    what SCENE needs of the pipeline, and why; SCENE=all: what that saves'
-	@echo '                SCENE=all SEEDS=3   placements to try for the clock; 0: no clock'
-	@echo '                SCENE=all GATES=1   count gate equivalents, too (see make synth)'
-	@echo 'make prune-random SCENES=200 random scenes, each on the build pruned to it (minutes)'
-	@echo 'make check    lint and the fast tests: a minute'
-	@echo 'make test     lint, then all tests of the main installation'
-	@echo 'make lint     Verilator -Wall and Verible on rtl/ and sim/, Ruff on Python'
-	@echo 'make results  the README'"'"'s table of results, measured anew'
-	@echo 'make report   one page of all results: build/report/index.html'
-	@echo 'make test-report  the page in headless Chromium: what it draws, its controls'
-	@echo 'make test-all  make test and make test-report in one'
-	@echo 'make stability  stiff and extreme cases, a row each: error, bound, RTL against model'
-	@echo 'make adversarial  search for the input with the largest error; KEEP=1 keeps a worse one'
-	@echo 'make bench    clocks a second of the simulation, frames a second of the model'
-	@echo 'make synth    synthesis, place and route for an ECP5; build/synth/CONFIG/report.json'
-	@echo '                CONFIG=default  a configuration by name'
-	@echo '                SCENE=torus     only what this scene needs of it (see make prune)'
-	@echo '                GRADE=6         speed grade of the chip, 6 or 8'
-	@echo '                SEEDS=3         how many placements to try; the median counts'
-	@echo '                GATES=1         count gate equivalents in standard cells, too (minutes)'
-	@echo 'make sweep    error against run time and hardware over word widths and methods; build/sweep/'
-	@echo '                AREA=1          synthesize each configuration, too, for its size'
-	@echo '                ROUTE=1         place and route each anew for its clock: 2 hours; or ROUTE=name,name;'
-	@echo '                                else the clocks kept in tests/records/ count, while they hold'
-	@echo 'make tessellation  error against true surfaces, from coarse to fine meshes; Mach bands,'
-	@echo '                flicker, orientation; part of make sweep, a minute'
-	@echo 'make netlist  whole frames through the netlist in ECP5 cells, against the model'
-	@echo 'make coverage line, branch and toggle coverage of rtl/ by the module and frame tests'
-	@echo 'make activity register toggles a pixel of every bundled scene'
-	@echo 'make waves    MODULE=phong_pipeline: a waveform of a short run, grouped for GTKWave'
-	@echo 'make icarus   the module tests once more in Icarus Verilog, with unknown values (minutes)'
-	@echo 'make mutate   change each constant and operator of rtl/, run the module tests (an hour or two)'
-	@echo '                FILES="a b"     of these modules only'
-	@echo '                KIND=operator   or KIND=constant'
-	@echo '                SAMPLE=20       so many at random'
-	@echo '                AGAIN=1         not those that were killed before and did not change'
-	@echo 'make hardware the README'"'"'s table of hardware, proofs and tests, from the last results'
-	@echo 'make formal   prove flow control and the interpolators, and that broken designs fail (minutes)'
-	@echo 'make setup    install the pinned packages into .venv; the other targets do this by themselves'
-	@echo 'make clean    remove build/ (.venv stays)'
+# -- variables -------------------------------------------------------------------------------------
 
+# What was set on the command line; a variable of the environment is not looked at.
+given := $(foreach v,$(.VARIABLES),$(if $(filter command,$(firstword $(origin $v))),$v))
+# The value of variable $1, if it was set; and as an argument for the shell, whatever is in it.
+setting = $(if $(filter $1,$(given)),$($1))
+quote = '$(subst ','\'',$(1))'
+
+# Which variables each target takes. Any other is refused, before anything is run.
+variables_run := SCENE SIZE TECHNIQUE CONFIG FPS CLOCK_MHZ PRUNE SPANS OUT
+variables_prune := SCENE SIZE SEEDS GATES RECORD
+variables_scenes := RECORD
+variables_sweep := AREA ROUTE RECORD
+variables_tessellation := RECORD
+variables_stability := RECORD
+variables_adversarial := KEEP RECORD
+variables_synth := CONFIG SCENE PRUNE GRADE SEEDS GATES RECORD
+variables_netlist := RECORD
+variables_formal := RECORD
+variables_activity := RECORD
+variables_waves := MODULE CONFIG
+variables_bench := RECORD
+variables_export := CONFIG OUT SCENE SIZE
+variables_mutate := FILES KIND SAMPLE AGAIN RECORD
+variables_coverage := RECORD
+variables_icarus := RECORD
+variables_prune-random := SCENES RECORD
+variables_test := RECORD
+variables_test-all := RECORD
+
+goals := $(or $(MAKECMDGOALS),help)
+accepted := $(foreach goal,$(goals),$(variables_$(goal)))
+unknown := $(filter-out $(accepted) PYTHON,$(given))
+ifneq ($(strip $(unknown)),)
+$(error `make $(goals)` has no variable $(firstword $(unknown)); it takes $(or $(strip $(accepted)),none))
+endif
+flags := RECORD KEEP GATES AREA AGAIN
+wrong := $(foreach v,$(filter $(flags),$(given)),$(if $(filter-out 0 1,$($v))$(word 2,$($v)),$v))
+ifneq ($(strip $(wrong)),)
+$(error $(firstword $(wrong)) is `$($(firstword $(wrong)))`, not 0 or 1)
+endif
+
+# --size='640x480' of SIZE=640x480; nothing for a variable that is not set or empty.
+option = $(if $(call setting,$2),$1=$(call quote,$(call setting,$2)))
+# --record of RECORD=1.
+flag = $(if $(filter 1,$(call setting,$2)),$1)
+# An argument without a name, such as the scene: after all options, whatever it begins with.
+argument = $(if $(call setting,$1),-- $(call quote,$(call setting,$1)))
+
+record = $(call flag,--record,RECORD)
+size = $(call option,--size,SIZE)
+config = $(call option,--config,CONFIG)
+
+# -- set-up ----------------------------------------------------------------------------------------
+
+# Packages come in groups, so that a target installs only what it uses.
+.PHONY: setup hardware-setup page-setup docs-setup all-setup
 setup:
 	@scripts/setup.sh
+hardware-setup:
+	@scripts/setup.sh hardware
+page-setup:
+	@scripts/setup.sh page
+docs-setup:
+	@scripts/setup.sh docs
+all-setup:
+	@scripts/setup.sh hardware page docs
+
+# -- commands --------------------------------------------------------------------------------------
+
+.PHONY: run prune scenes sweep tessellation stability adversarial report synth netlist formal activity \
+  waves bench export configs
 
 run: setup
-	@$(PYTHON) -m phong75.scripts.run --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE)) \
-	  --fps=$(call quote,$(FPS)) --clock-mhz=$(call quote,$(CLOCK_MHZ)) \
-	  --out=$(call quote,$(OUT)) --spans=$(call quote,$(SPANS)) \
-	  --technique=$(call quote,$(TECHNIQUE)) \
-	  --prune=$(call quote,$(PRUNE))
+	@$(PHONG75) run $(size) $(call option,--technique,TECHNIQUE) $(config) $(call option,--fps,FPS) \
+	  $(call option,--clock,CLOCK_MHZ) $(call option,--prune,PRUNE) $(call option,--spans,SPANS) \
+	  $(call option,--out,OUT) $(call argument,SCENE)
 
-prune: setup
-	@$(PYTHON) -m phong75.scripts.prune --scene=$(call quote,$(SCENE)) --size=$(call quote,$(SIZE)) \
-	  --seeds=$(call quote,$(SEEDS)) --gates=$(call quote,$(GATES))
+prune: $(if $(filter all,$(call setting,SCENE)),hardware-setup,setup)
+	@$(PHONG75) prune $(size) $(call option,--seeds,SEEDS) $(call flag,--gates,GATES) $(record) \
+	  $(call argument,SCENE)
 
-.PHONY: prune-random
-SCENES ?= 200
+scenes: setup
+	@$(PHONG75) scenes $(record)
 
-prune-random: setup
-	@$(PYTHON) -m tests.campaigns.random_scenes $(call quote,$(SCENES))
+sweep: $(if $(filter-out 0,$(call setting,AREA) $(call setting,ROUTE)),hardware-setup,setup)
+	@$(PHONG75) sweep $(call flag,--area,AREA) $(call option,--route,ROUTE) $(record)
+
+tessellation: setup
+	@$(PHONG75) tessellation $(record)
+
+stability: setup
+	@$(PHONG75) stability $(record)
+
+adversarial: setup
+	@$(PHONG75) adversarial $(or $(record),$(call flag,--record,KEEP))
+
+report: page-setup
+	@$(PHONG75) report
+
+synth: hardware-setup
+	@$(PHONG75) synth $(config) $(or $(call option,--prune,PRUNE),$(call option,--prune,SCENE)) \
+	  $(call option,--grade,GRADE) $(call option,--seeds,SEEDS) $(call flag,--gates,GATES) $(record)
+
+netlist: hardware-setup
+	@$(PHONG75) netlist $(record)
+
+formal: hardware-setup
+	@$(PHONG75) formal $(record)
+
+activity: setup
+	@$(PHONG75) activity $(record)
+
+waves: setup
+	@$(PHONG75) waves $(config) $(call argument,MODULE)
+
+bench: setup
+	@$(PHONG75) bench $(record)
+
+export: setup
+	@$(PHONG75) export $(config) $(call option,--out,OUT) $(call option,--scene,SCENE) \
+	  $(call option,--size,SIZE)
+
+configs: setup
+	@$(PHONG75) configs
+
+# -- for developers --------------------------------------------------------------------------------
+
+.PHONY: lint check test test-all test-report mutate coverage icarus prune-random docs clean
+
+lint: setup
+	@$(PYTHON) -m phong75.scripts.lint
 
 check: setup
 	@$(PYTHON) -m tests.run check
 
 test: setup
-	@$(PYTHON) -m tests.run test
+	@$(PYTHON) -m tests.run test $(call flag,--record-durations,RECORD)
 
-lint: setup
-	@$(PYTHON) -m phong75.scripts.lint
+test-all: all-setup
+	@$(PYTHON) -m tests.run all $(call flag,--record-durations,RECORD)
 
-bench: setup
-	@$(PYTHON) -m phong75.scripts.benchmark
-
-.PHONY: report test-report test-all stability adversarial
-report: setup
-	@$(PYTHON) -m phong75.scripts.page.report
-
-test-report: setup
+test-report: page-setup
 	@command -v chromium >/dev/null || \
 	  { echo 'The report page is tested in Chromium: apt-get install chromium' >&2; exit 2; }
 	@$(PYTHON) -m pytest tests/page
 
-test-all: setup
-	@$(PYTHON) -m tests.run all
-
-stability: setup
-	@$(PYTHON) -m phong75.scripts.stability
-
-adversarial: setup
-	@$(PYTHON) -m phong75.scripts.adversarial $(if $(KEEP),--keep)
-
-results: setup
-	@$(PYTHON) -m phong75.scripts.scene_results
-
-sweep: setup
-	@$(PYTHON) -m phong75.scripts.studies.sweep --area=$(call quote,$(AREA)) --route=$(call quote,$(ROUTE))
-	@$(PYTHON) -m phong75.scripts.studies.tessellation_runs
-
-tessellation: setup
-	@$(PYTHON) -m phong75.scripts.studies.tessellation_runs
-
-synth: setup
-	@$(PYTHON) -m phong75.scripts.synth --config=$(call quote,$(CONFIG)) \
-	  $(if $(filter-out file,$(origin SCENE)),--scene=$(call quote,$(SCENE))) --grade=$(call quote,$(GRADE)) \
-	  --seeds=$(call quote,$(SEEDS)) --gates=$(call quote,$(GATES))
-
-netlist: setup
-	@$(PYTHON) -m phong75.scripts.netlist
+mutate: setup
+	@$(PYTHON) -m tests.campaigns.mutation $(call option,--kind,KIND) $(call option,--sample,SAMPLE) \
+	  $(call flag,--again,AGAIN) $(record) -- $(foreach f,$(call setting,FILES),$(call quote,$f))
 
 coverage: setup
-	@$(PYTHON) -m tests.campaigns.coverage
-
-activity: setup
-	@$(PYTHON) -m phong75.scripts.activity
-
-waves: setup
-	@$(PYTHON) -m phong75.scripts.waves $(call quote,$(MODULE))
-
-mutate: setup
-	@$(PYTHON) -m tests.campaigns.mutation $(if $(FILES),--files $(FILES)) $(if $(KIND),--kind $(KIND)) \
-	  $(if $(SAMPLE),--sample $(SAMPLE)) $(if $(AGAIN),--again)
+	@$(PYTHON) -m tests.campaigns.coverage $(record)
 
 icarus: setup
-	@$(PYTHON) -m tests.campaigns.icarus
+	@$(PYTHON) -m tests.campaigns.icarus $(record)
 
-hardware: setup
-	@$(PYTHON) -m phong75.scripts.recorded
+prune-random: setup
+	@$(PYTHON) -m tests.campaigns.random_scenes $(call option,--scenes,SCENES) $(record)
 
-formal: setup
-	@$(PYTHON) -m phong75.scripts.formal
+docs: docs-setup
+	@$(PYTHON) -m phong75.scripts.docs
 
 clean:
 	@rm -rf build .hypothesis .ruff_cache
 	@find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +
+
+# -- help ------------------------------------------------------------------------------------------
+
+.PHONY: help
+help:
+	@echo 'Render and look:'
+	@echo '  make run           SCENE=teapot through RTL and model, compared; build/NAME/'
+	@echo '                     SIZE=640x480 TECHNIQUE=phong|gouraud|flat CONFIG=NAME FPS=30'
+	@echo '                     CLOCK_MHZ=200 PRUNE=1|SCENE SPANS=FILE OUT=DIR'
+	@echo '  make prune         what SCENE needs of the pipeline; SCENE=all: what that saves'
+	@echo '                     SIZE=640x480 SEEDS=3 GATES=1'
+	@echo '  make scenes        all bundled scenes at three sizes'
+	@echo '  make report        one page of all results'
+	@echo '  make waves         MODULE=phong_pipeline CONFIG=NAME: a waveform for GTKWave'
+	@echo '  make configs       the names that CONFIG takes'
+	@echo '  make export        CONFIG=NAME OUT=DIR: a folder with the design, for other tools'
+	@echo 'Measure:'
+	@echo '  make sweep         error, run time, hardware of all CONFIGs; AREA=1 ROUTE=1|NAMES'
+	@echo '  make tessellation  error against true surfaces (part of make sweep)'
+	@echo '  make stability     stiff and extreme cases'
+	@echo '  make adversarial   search for the largest error; KEEP=1 keeps a worse input'
+	@echo '  make bench         speed of simulation and model'
+	@echo 'Hardware:'
+	@echo '  make synth         size and clock on a Lattice ECP5'
+	@echo '                     CONFIG=NAME SCENE=torus GRADE=6|8 SEEDS=3 GATES=1'
+	@echo '  make netlist       frames through the netlist'
+	@echo '  make formal        proofs of the flow control'
+	@echo '  make activity      register toggles a pixel'
+	@echo 'Develop:'
+	@echo '  make check         the fast tests; make test: all that need no tools besides;'
+	@echo '                     make test-all: everything, as CI'
+	@echo '  make lint          Verilator -Wall, Verible, Ruff'
+	@echo '  make test-report   the report page in Chromium'
+	@echo '  make mutate        change each constant and operator of rtl/'
+	@echo '                     FILES="a b" KIND=constant|operator SAMPLE=20 AGAIN=1'
+	@echo '  make coverage      coverage of rtl/; make icarus: the module tests with unknown values'
+	@echo '  make prune-random  SCENES=200: random scenes on the builds pruned to them'
+	@echo '  make docs          the documentation, build/docs/'
+	@echo '  make setup         install what make run and make test use; make clean: remove build/'
+	@echo 'RECORD=1 writes the figures of a long run into results/, unless a better run is there.'
+	@echo 'The same as a program with more options: .venv/bin/phong75 --help'

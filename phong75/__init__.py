@@ -13,29 +13,35 @@ Arrays are numpy arrays; the docstrings give their shapes and formats. What a us
 `InputError` with one line that says where and how.
 """
 
-from phong75.model import (
-    DEFAULT,
-    SPAN_DTYPE,
-    TECHNIQUES,
-    Config,
-    ExactFrame,
-    Format,
-    Frame,
-    FrontEnd,
-    InputError,
-    MaterialTable,
-    Pixels,
-    Scene,
-    bundled_scenes,
-    front_end,
-    load_scene,
-    picture,
-    read_spans,
-    reference,
-    render,
-    twin,
-    write_spans,
-)
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from phong75.model import (
+        DEFAULT,
+        SPAN_DTYPE,
+        TECHNIQUES,
+        Config,
+        ExactFrame,
+        Format,
+        Frame,
+        FrontEnd,
+        InputError,
+        MaterialTable,
+        Pixels,
+        Scene,
+        bundled_scenes,
+        front_end,
+        load_scene,
+        picture,
+        read_spans,
+        reference,
+        render,
+        twin,
+        write_spans,
+    )
 
 __version__ = "0.2.0"
 
@@ -63,3 +69,15 @@ __all__ = [
     "twin",
     "write_spans",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Import the model when one of its names is first asked for: `phong75 --help` needs none."""
+    if name not in (*__all__, "model"):
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    model = importlib.import_module("phong75.model")
+    return model if name == "model" else globals().setdefault(name, getattr(model, name))
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,4 +1,5 @@
-"""Register toggles per pixel of every bundled scene, a number for energy: `make activity`.
+# SPDX-License-Identifier: MIT
+"""Register toggles per pixel of every bundled scene, a number for energy: `phong75 activity`.
 
 Counted by Verilator's toggle coverage over one frame: changes of bits that rtl/ declares as `reg`,
 so that wires and ports, which repeat them, do not count twice. No glitches, no wires, no clock
@@ -7,22 +8,19 @@ tree; not joules. The numbers go to build/activity.json.
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import re
 import shutil
-import sys
 from pathlib import Path
 
-from rich.console import Console
 from rich.table import Table
 
-from phong75.model.config import DEFAULT as CONFIG
-from phong75.model.config import Config
+from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import Frame
 from phong75.model.front.scene import bundled_scenes, load_scene
 from phong75.model.scene_to_frame import front_end
-from phong75.scripts import recorded
+from phong75.scripts import console, recorded
+from phong75.scripts.configurations import CONFIGURATIONS
 from phong75.sim import design
 from phong75.sim.build import Bench
 from phong75.sim.coverage import points
@@ -54,27 +52,28 @@ def toggles_per_pixel(frame: Frame, config: Config, folder: Path) -> tuple[int, 
     return pixels, toggles / pixels
 
 
-def main() -> int:
-    """Measure and print; returns the exit code."""
+def main(record: bool) -> int:
+    """Measure and print; returns the exit code. Raises BuildError, SimulationError."""
+    recorded.check(record)
     table = Table(title="register toggles a pixel, 640x480")
-    hold = dataclasses.replace(CONFIG, name="hold", hold_unlit=True)
+    hold = CONFIGURATIONS["hold_unlit"]
     for title in ("scene", "pixels", "toggles a pixel", "with hold_unlit"):
         table.add_column(title, justify="right")
     found = {}
     for scene in bundled_scenes():
+        console.phase(scene)
         frame = front_end(load_scene(scene)).frame
-        pixels, toggles = toggles_per_pixel(frame, CONFIG, BUILD / "activity")
+        pixels, toggles = toggles_per_pixel(frame, DEFAULT, BUILD / "activity")
         held = toggles_per_pixel(frame, hold, BUILD / "activity")[1]
         found[scene] = {
             "pixels": pixels, "toggles_per_pixel": round(toggles, 1),
             "hold_unlit": round(held, 1),
         }  # fmt: skip
         table.add_row(scene, str(pixels), f"{toggles:.0f}", f"{held:.0f}")
-    Console().print(table)
-    recorded.save("activity", "make activity", ("verilator",), {"scenes": found})
+    console.show(table)
     (BUILD / "activity.json").write_text(json.dumps(found, indent=2) + "\n")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    if record:
+        recorded.record(
+            "activity", "make activity", ("verilator",), {"scenes": found}, {"scenes": len(found)}
+        )
+    return console.GOOD

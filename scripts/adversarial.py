@@ -1,33 +1,35 @@
-"""Searches for the input with the largest error: `make adversarial`.
+# SPDX-License-Identifier: MIT
+"""Searches for the input with the largest error: `phong75 adversarial`.
 
 Exit code: 0; 1 if an input is beyond its bound; 2. An input worse than the kept one (see
-model/adversarial.py) is shown, and kept with `--keep`; `make stability` replays what is kept.
+model/studies/adversarial.py) is shown, and kept with `--record`; `phong75 stability` replays what
+is kept.
 """
 
 from __future__ import annotations
 
 import json
-import sys
 
-from rich.console import Console
 from rich.table import Table
 
 from phong75.model.analysis import error_budget
 from phong75.model.studies import adversarial
-from phong75.scripts.run import Steps
+from phong75.scripts import console, recorded
+from phong75.scripts.console import Steps
 from phong75.sim.design import BUILD
 
 
-def main(argv: list[str]) -> int:
-    """Search all families; returns the exit code."""
+def main(record: bool) -> int:
+    """Search all families, and keep worse inputs if `record`; returns the exit code."""
+    recorded.check(record)
     old = {(r["limit"], r["steep"]): r for r in adversarial.kept()} if _kept() else {}
     steps, rows, shown, beyond, better = Steps(), [], [], [], []
     table = Table(title="largest error found, LSB", title_style="bold")
     for title in ("inputs", "found", "kept", "bound of the input", "bound of all such inputs"):
         table.add_column(title, justify="left" if title == "inputs" else "right")
     for family in adversarial.FAMILIES:
-        with steps.step(family.name) as progress:
-            found = adversarial.search(family, progress=progress)
+        with steps.step(family.name) as step:
+            found = adversarial.search(family, progress=step.done)
         before = old.get((family.limit, family.steep))
         if before is None or found["error_lsb"] > before["error_lsb"]:
             better.append(family.name)
@@ -46,20 +48,18 @@ def main(argv: list[str]) -> int:
     folder = BUILD / "stability"
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "adversarial.json").write_text(json.dumps(shown, indent=1) + "\n")
-    Console().print(table)
-    if better and "--keep" in argv:
+    console.show(table)
+    if better and record and not beyond:
         adversarial.keep(rows)
-        print(f"kept in {adversarial.KEPT.name}: {', '.join(better)}")
+        console.say(f"kept in {adversarial.KEPT.name}: {', '.join(better)}")
+    elif better and record:
+        console.note(f"not kept in {adversarial.KEPT.name}: the run failed")
     elif better:
-        print(f"worse than what is kept: {', '.join(better)}; KEEP=1 keeps them")
+        console.say(f"worse than what is kept: {', '.join(better)}; --record keeps them")
     for line in beyond:
-        print(f"FAILED: {line}", file=sys.stderr)
-    return 1 if beyond else 0
+        console.failure(line)
+    return console.FAILED if beyond else console.GOOD
 
 
 def _kept() -> bool:
     return adversarial.KEPT.is_file()
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

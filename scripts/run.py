@@ -1,4 +1,5 @@
-"""Render one frame through the RTL and the model, compare them, and report: `make run`.
+# SPDX-License-Identifier: MIT
+"""Render one frame through the RTL and the model, compare them, and report: `phong75 run`.
 
 Exit code: 0 if all is good; 1 if a pixel differs, or the cycle budget or the error bound is
 missed; 2 if the input or the set-up is wrong, with one line on stderr that says what.
@@ -6,41 +7,45 @@ missed; 2 if the input or the set-up is wrong, with one line on stderr that says
 
 from __future__ import annotations
 
-import argparse
+import fcntl
 import json
-import math
 import os
-import re
-import sys
 import tempfile
-import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from phong75.model import spans, twin
 from phong75.model.analysis import error_budget, metrics, pictures, pruning, reference, run_report
 from phong75.model.config import DEFAULT, TECHNIQUES, Config
-from phong75.model.frame import InputError
+from phong75.model.frame import ExactFrame, Frame, InputError
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
-from phong75.sim.build import BuildError
-from phong75.sim.design import BUILD
+from phong75.scripts import console, options
+from phong75.scripts.console import Steps
+from phong75.scripts.run_table import table
+from phong75.sim.frame import run_frame
 from phong75.sim.frame.locate import locate
-from phong75.sim.frame.run_frame import SimulationError, simulate
+from phong75.sim.frame.run_frame import SimResult
+
+#: As `sim.frame.run_frame.simulate`: span file, frame, configuration, and what to call with the
+#: name of each phase.
+Simulate = Callable[[Path, Frame, Config, Callable[[str], None]], SimResult]
+
+FILES = ("frame.png", "reference.png", "error.png", "spans", "report.json")
 
 
 @dataclass(frozen=True)
-class Job:
+class RunRequest:
     """What to run: a scene (`size` None for its own) or, where `spans` is set, a span file,
     with the hardware of `config`.
 
-    prune: "" for the full design, "1" for what is pruned to this job, else the name or path of a
-    scene: what is pruned to that one at the same size.
+    prune: "" for the full design, "self" for what is pruned to this scene, else the name or path
+    of a scene: what is pruned to that one at the same size. clock_hz in hertz; fps in frames a
+    second; out: folder of the results.
     """
 
     config: Config
@@ -53,205 +58,205 @@ class Job:
     prune: str = ""
 
 
-@dataclass
-class Steps:
-    """Shows the steps of a run on stderr while they last, and keeps how long each took."""
-
-    console: Console = field(default_factory=lambda: Console(stderr=True))
-    wall_s: dict[str, float] = field(default_factory=dict)
-
-    @contextmanager
-    def step(self, name: str):
-        """Time the body under `name`; gives it a function to call with the part done, 0 to 1."""
-        start = time.perf_counter()
-        if self.console.is_terminal:
-            columns = TextColumn("{task.description:<10}"), BarColumn(), TimeElapsedColumn()
-            with Progress(*columns, console=self.console, transient=True) as bar:
-                task = bar.add_task(name.replace("_", " "), total=None)
-                yield lambda done: bar.update(task, completed=done, total=1.0)
-        else:
-            print(f"{name.replace('_', ' ')} ...", file=sys.stderr, flush=True)
-            yield lambda done: None
-        self.wall_s[name] = time.perf_counter() - start
-
-
-def parse(argv) -> Job:
-    """The job that the command line `argv` asks for. Raises InputError."""
-    parser = _Parser(prog="run", description=__doc__.partition("\n")[0])
-    parser.add_argument("--scene", default="", help="bundled scene, scene file or mesh")
-    parser.add_argument("--spans", default="", help="span file to run instead of a scene")
-    parser.add_argument("--technique", default="", help="phong, gouraud or flat")
-    parser.add_argument("--size", default="", help="WIDTHxHEIGHT; default: the scene's own")
-    parser.add_argument("--fps", default="30", help="frames a second to check for")
-    parser.add_argument("--clock-mhz", default="200", help="clock of the hardware")
-    parser.add_argument(
-        "--prune", default="", help="1, or a scene: leave out what it does not need"
-    )
-    parser.add_argument("--out", default="", help="folder of the results; default: build/<scene>")
-    given = parser.parse_args(argv)
-    scene, technique = given.scene or "teapot", given.technique or DEFAULT.technique
-    if technique not in TECHNIQUES:
-        raise InputError(f"TECHNIQUE is `{technique}`, not one of {', '.join(TECHNIQUES)}")
-    config = TECHNIQUES[technique]
-    suffix = "" if config is DEFAULT else f"-{config.name}"
-    fps, clock = _positive("FPS", given.fps), _positive("CLOCK_MHZ", given.clock_mhz)
-    return Job(
+def request(
+    scene: str = "teapot", spans: Path | None = None, size: tuple[int, int] | None = None,
+    config: Config = DEFAULT, fps: float = 30, clock_mhz: float = 200, prune: str = "",
+    out: Path | None = None,
+) -> RunRequest:  # fmt: skip
+    """The request with its defaults: results go to build/<scene>-<configuration>."""
+    suffix = "" if config == DEFAULT else f"-{config.name}"
+    return RunRequest(
         config=config,
         scene=scene,
-        spans=Path(given.spans) if given.spans else None,
-        size=parse_size(given.size, config) if given.size else None,
+        spans=spans,
+        size=size,
         fps=fps,
-        clock_hz=_whole(clock * 1e6),
-        out=Path(given.out or Path("build", Path(given.spans or scene).stem + suffix)),
-        prune="" if given.prune == "0" else given.prune,
+        clock_hz=options.whole(clock_mhz * 1e6),
+        out=out or Path("build", Path(spans or scene).stem + suffix),
+        prune={"0": "", "1": "self"}.get(prune, prune),
     )
 
 
-class _Parser(argparse.ArgumentParser):
-    """Reports a wrong command line like any other wrong input."""
+@dataclass(frozen=True)
+class Stimulus:
+    """What the front end leaves: the frame, its file, and the configuration to build for it.
 
-    def error(self, message):
-        raise InputError(message)
-
-
-def parse_size(text: str, config: Config) -> tuple[int, int]:
-    """(width, height) of a text such as 640x480. Raises InputError."""
-    match = re.fullmatch(r"([0-9]{1,9})x([0-9]{1,9})", text)
-    if not match:
-        raise InputError(f"SIZE is `{text}`, not WIDTHxHEIGHT such as 640x480")
-    size = int(match[1]), int(match[2])
-    if not all(1 <= side <= config.max_size for side in size):
-        raise InputError(f"SIZE is {text}: each side must be from 1 to {config.max_size}")
-    return size
-
-
-def _positive(name, text):
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 1e-9 <= value <= 1e9:
-        raise InputError(f"{name} is `{text}`, not a number from 1e-9 to 1e9")
-    return _whole(value)
-
-
-def _whole(value):
-    """`value` as an int where it is one, so that reports say 30 and not 30.0."""
-    return int(value) if value == int(value) else value
-
-
-def run(job: Job, simulate, steps: Steps) -> dict:
-    """Do `job` and write its files; returns the report. `simulate`: `sim.run_frame.simulate`.
-
-    Raises InputError if the input is wrong or `job.out` no folder to write to, OSError if a file
-    cannot be written, BuildError or SimulationError if the simulator does not work.
+    exact: the scene before any rounding; None where there is no scene behind the spans.
     """
-    with _results(job.out) as folder:
-        return _run(job, simulate, steps, job.config, folder)
+
+    frame: Frame
+    exact: ExactFrame | None
+    degenerate_triangles: int
+    built: Config
+    path: Path
 
 
-def _run(job, simulate, steps, config, folder):
-    with steps.step("front_end") as progress:
-        if job.spans:
-            frame, exact, degenerate = spans.read_spans(job.spans, config), None, 0
+@dataclass(frozen=True)
+class Ideal:
+    """The reference: 255 S in float64, float64[n, 3], of the integers at the ports, and of the
+    scene before any rounding where there is one; and the bound of the error in LSB, or None."""
+
+    ports: np.ndarray
+    scene: np.ndarray | None
+    bound: float | None
+
+
+# -- the stages of a run ---------------------------------------------------------------------------
+
+
+def _front_end(request: RunRequest, folder: Path, steps: Steps) -> Stimulus:
+    """Scene or span file to a frame. Raises InputError."""
+    config = request.config
+    with steps.step("front_end") as step:
+        if request.spans:
+            frame, exact, degenerate = spans.read_spans(request.spans, config), None, 0
         else:
-            made = front_end(load_scene(job.scene, job.size, config), config, progress)
-            frame, exact, degenerate = made.frame, made.exact, made.degenerate_triangles
-        built = _built(job, frame, config)
+            scene = load_scene(request.scene, request.size, config)
+            front = front_end(scene, config, step.done)
+            frame, exact, degenerate = front.frame, front.exact, front.degenerate_triangles
+        built = _built(request, frame)
         if built.values != config.values and (reasons := pruning.missing(frame, built, config)):
             raise InputError(f"its spans have no place for this scene: {reasons[0]}")
-        stimulus = folder / "spans"
-        spans.write_spans(stimulus, frame, built)
-    with steps.step("model") as progress:
-        expected = twin.render(frame, config, progress)
-        pruned_differ = 0
-        if built != config:
-            pruned_differ = metrics.compare(expected, twin.render(frame, built)).mismatches
-    with steps.step("simulation") as progress:
-        simulation = simulate(stimulus, frame, built, progress)
-    steps.wall_s |= {"build": simulation.build_s, "simulate": simulation.simulate_s}
-    with steps.step("reference"):
-        ideal = reference.render(frame, config)
-        scene_ideal = reference.render_exact(frame, exact, config) if exact else None
-        bound = error_budget.bound_lsb(frame, config)
+        path = folder / "spans"
+        spans.write_spans(path, frame, built)
+    return Stimulus(frame, exact, degenerate, built, path)
 
-    comparison = metrics.compare(expected, simulation.pixels)
-    # A broken stream may be shorter or longer; what can be set against the reference is.
-    both = min(len(ideal), len(simulation.pixels.rgb))
-    codes = simulation.pixels.rgb[:both]
-    found = run_report.make_report(
-        scene=Path(job.spans or job.scene).stem,
-        frame=frame,
-        config=built,
-        fps=job.fps,
-        clock_hz=job.clock_hz,
+
+def _built(request: RunRequest, frame: Frame) -> Config:
+    """The configuration to build for `request`, whose frame is `frame`."""
+    config = request.config
+    if not request.prune:
+        return config
+    if request.prune != "self":
+        scene = load_scene(request.prune, (frame.width, frame.height), config)
+        frame = front_end(scene, config).frame
+    return pruning.prune(frame, config)[0]
+
+
+def _twin(stimulus: Stimulus, config: Config, steps: Steps) -> tuple[twin.Pixels, int]:
+    """The model's pixels by the full design, and in how many the pruned design's model differs."""
+    with steps.step("model") as step:
+        expected = twin.render(stimulus.frame, config, step.done)
+        if stimulus.built == config:
+            return expected, 0
+        pruned = twin.render(stimulus.frame, stimulus.built)
+        return expected, metrics.compare(expected, pruned).mismatches
+
+
+def _simulation(stimulus: Stimulus, simulate: Simulate, steps: Steps) -> SimResult:
+    """The frame through the RTL. Raises BuildError, SimulationError."""
+    with steps.step("simulation", "") as step:
+        result = simulate(stimulus.path, stimulus.frame, stimulus.built, step.phase)
+    steps.wall_s |= {"build": result.build_s, "simulate": result.simulate_s}
+    return result
+
+
+def _reference(stimulus: Stimulus, config: Config, steps: Steps) -> Ideal:
+    """The frame in float64, and how far from it a code may be."""
+    frame, exact = stimulus.frame, stimulus.exact
+    with steps.step("reference"):
+        return Ideal(
+            reference.render(frame, config),
+            reference.render_exact(frame, exact, config) if exact else None,
+            error_budget.bound_lsb(frame, config),
+        )
+
+
+def _report(
+    request: RunRequest, stimulus: Stimulus, comparison: metrics.Comparison, pruned_differ: int,
+    simulation: SimResult, ideal: Ideal, steps: Steps,
+) -> dict:  # fmt: skip
+    """The contents of report.json."""
+    codes, ports = _common(simulation, ideal.ports)
+    scene_error = None
+    if ideal.scene is not None:
+        scene_error = metrics.error_metrics(*_common(simulation, ideal.scene))
+    return run_report.make_report(
+        scene=Path(request.spans or request.scene).stem,
+        frame=stimulus.frame,
+        config=stimulus.built,
+        fps=request.fps,
+        clock_hz=request.clock_hz,
         simulation=simulation,
         comparison=comparison,
-        zero_normals=twin.zero_normals(frame, config),
-        error=metrics.error_metrics(codes, ideal[:both]),
-        bound_lsb=float(bound),
+        zero_normals=twin.zero_normals(stimulus.frame, request.config),
+        error=metrics.error_metrics(codes, ports),
+        bound_lsb=None if ideal.bound is None else float(ideal.bound),
         pruned_differ=pruned_differ,
-        input_error=metrics.error_metrics(codes, scene_ideal[:both]) if exact else None,
-        degenerate_triangles=degenerate,
+        input_error=scene_error,
+        degenerate_triangles=stimulus.degenerate_triangles,
         wall_s={
             name: round(steps.wall_s[name], 3)
             for name in ("front_end", "model", "reference", "build", "simulate")
         },
     )
+
+
+def _common(simulation: SimResult, ideal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Codes and `ideal` of the pixels that both have: a broken stream may be shorter or longer."""
+    both = min(len(ideal), len(simulation.pixels.rgb))
+    return simulation.pixels.rgb[:both], ideal[:both]
+
+
+def _pictures(
+    folder: Path, name: str, frame: Frame, expected: twin.Pixels, simulation: SimResult,
+    ideal: Ideal, steps: Steps,
+) -> None:  # fmt: skip
+    """Write the picture of the RTL, that of the reference, and the map of the error, which shows
+    `name`."""
     with steps.step("pictures"):
         x, y = simulation.pixels.x, simulation.pixels.y
-        shown = pictures.canvas(frame, x, y, simulation.pixels.rgb)
-        pictures.write_picture(folder / "frame.png", shown)
-        shown = pictures.canvas(frame, expected.x, expected.y, metrics.rounded(ideal))
-        pictures.write_picture(folder / "reference.png", shown)
-        error = np.abs(codes - ideal[:both])
+        frame_picture = pictures.canvas(frame, x, y, simulation.pixels.rgb)
+        pictures.write_picture(folder / "frame.png", frame_picture)
+        rounded = metrics.rounded(ideal.ports)
+        reference_picture = pictures.canvas(frame, expected.x, expected.y, rounded)
+        pictures.write_picture(folder / "reference.png", reference_picture)
+        codes, ports = _common(simulation, ideal.ports)
+        error = np.abs(codes - ports)
+        both = len(error)
         pictures.write_error_map(
-            folder / "error.png", frame, x[:both], y[:both], error, bound,
-            name=f"{found['scene']}, {found['technique']}",
-        )  # fmt: skip
-    text = json.dumps(found, indent=2, allow_nan=False) + "\n"
-    (folder / "report.json").write_text(text, encoding="utf-8")
-    for reason in pruning.missing(frame, built, config):
-        print(f"left out, but needed: {reason}", file=sys.stderr)
-    if comparison.first:
-        print(_where(comparison.first), file=sys.stderr)
-        if comparison.first.expected and built == config:
-            print(locate(frame, comparison.first.index, config), file=sys.stderr)
-    return found
+            folder / "error.png",
+            frame,
+            x[:both],
+            y[:both],
+            error,
+            ideal.bound,
+            name=name,
+        )
 
 
-def _built(job: Job, frame, config: Config) -> Config:
-    """The configuration to build for `job`, whose frame is `frame`."""
-    if not job.prune:
-        return config
-    if job.prune != "1":
-        scene = load_scene(job.prune, (frame.width, frame.height), config)
-        frame = front_end(scene, config).frame
-    return pruning.prune(frame, config)[0]
+def run(request: RunRequest, simulate: Simulate, steps: Steps) -> dict:
+    """Do `request` and write its FILES; returns the report. simulate: `run_frame.simulate`.
 
-
-@contextmanager
-def _results(out: Path):
-    """A folder whose files move into `out` once the body is through; else `out` stays as it was.
-
-    Raises InputError if `out` cannot be a folder to write to.
+    Raises InputError if the input is wrong, or `request.out` no folder to write to or in use by
+    another run; OSError if a file cannot be written; BuildError or SimulationError if the
+    simulator does not work.
     """
-    made = not out.exists()
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-        partial = tempfile.TemporaryDirectory(dir=out, prefix=".partial-")
-    except OSError as error:
-        raise InputError(f"cannot write to OUT {out}: {error.strerror}") from None
-    try:
-        with partial as name:
-            yield Path(name)
-            for file in sorted(Path(name).iterdir()):
-                os.replace(file, out / file.name)
-    except BaseException:
-        if made:
-            with suppress(OSError):  # not empty: keep what is there
-                out.rmdir()
-        raise
+    config = request.config
+    with _results(request.out) as folder:
+        stimulus = _front_end(request, folder, steps)
+        expected, pruned_differ = _twin(stimulus, config, steps)
+        simulation = _simulation(stimulus, simulate, steps)
+        ideal = _reference(stimulus, config, steps)
+        comparison = metrics.compare(expected, simulation.pixels)
+        report = _report(request, stimulus, comparison, pruned_differ, simulation, ideal, steps)
+        name = f"{report['scene']}, {report['technique']}"
+        _pictures(folder, name, stimulus.frame, expected, simulation, ideal, steps)
+        text = json.dumps(report, indent=2, allow_nan=False) + "\n"
+        (folder / "report.json").write_text(text, encoding="utf-8")
+        _explain(stimulus, comparison, config)
+    return report
+
+
+def _explain(stimulus: Stimulus, comparison: metrics.Comparison, config: Config) -> None:
+    """Say why pixels differ: what the build leaves out, and the first place in the stream."""
+    for reason in pruning.missing(stimulus.frame, stimulus.built, config):
+        console.note(f"left out, but needed: {reason}")
+    if comparison.first:
+        console.note(_where(comparison.first))
+        by_technique = config in TECHNIQUES.values()  # `locate` knows the stages of these
+        if comparison.first.expected and stimulus.built == config and by_technique:
+            console.note(locate(stimulus.frame, comparison.first.index, config))
 
 
 def _where(first: metrics.Mismatch) -> str:
@@ -269,33 +274,66 @@ def _where(first: metrics.Mismatch) -> str:
     )
 
 
-def main(argv=None, simulate=simulate) -> int:
-    """Run the command line `argv`; returns the exit code. `simulate` may stand in for the RTL."""
+# -- the folder of the results ---------------------------------------------------------------------
+
+
+@contextmanager
+def _results(out: Path) -> Iterator[Path]:
+    """A folder whose files move into `out` once the body is through; else `out` stays as it was.
+
+    Raises InputError if `out` cannot be a folder to write to, or if another run writes to it.
+    """
+    created = not out.exists()
     try:
-        job = parse(argv)
-        found = run(job, simulate, Steps())
-    except InputError as error:
-        print(f"Error: {error}", file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"Error: {error.filename2 or error.filename}: {error.strerror}", file=sys.stderr)
-        return 2
-    except (BuildError, SimulationError) as error:
-        log = BUILD / "failure.log"
-        log.parent.mkdir(exist_ok=True)
-        log.write_text(f"{error}\n")
-        headline = str(error).partition("\n")[0].rstrip(":")
-        print(f"Error: {headline}; more is in {os.path.relpath(log)}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        return 130
-    Console().print(run_report.table(found))
-    print(f"{job.out}: frame.png reference.png error.png spans run_report.json")
-    failures = run_report.failures(found)
+        with _locked(out), tempfile.TemporaryDirectory(dir=out, prefix=".partial-") as name:
+            yield Path(name)
+            for file in sorted(Path(name).iterdir()):
+                os.replace(file, out / file.name)
+    except BaseException:
+        if created:
+            with suppress(OSError):  # not empty: keep what is there
+                out.rmdir()
+        raise
+
+
+@contextmanager
+def _locked(out: Path) -> Iterator[None]:
+    """Make the folder `out`, and keep other runs out of it meanwhile.
+
+    Raises InputError if `out` cannot be made or written to, or if another run is in it. The lock
+    goes with the process, however that ends.
+    """
+    path = out / ".lock"
+    held = False
+    while not held:
+        try:
+            out.mkdir(parents=True, exist_ok=True)
+            lock = open(path, "w")
+        except OSError as error:
+            raise InputError(f"cannot write to --out {out}: {error.strerror}") from None
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            held = os.path.samestat(os.fstat(lock.fileno()), path.stat())
+        except BlockingIOError:
+            lock.close()
+            raise InputError(
+                f"another run writes to --out {out}: wait for it, or name another folder"
+            ) from None
+        except FileNotFoundError:  # its last holder removed the file after we had opened it
+            lock.close()
+    with lock:
+        try:
+            yield
+        finally:
+            path.unlink(missing_ok=True)
+
+
+def main(request: RunRequest) -> int:
+    """Run `request`, print what came of it; returns the exit code. Raises as `run`."""
+    report = run(request, run_frame.simulate, Steps())
+    console.show(table(report))
+    console.say(f"{request.out}: {' '.join(FILES)}")
+    failures = run_report.failures(report)
     for line in failures:
-        print(f"FAILED: {line}", file=sys.stderr)
-    return 1 if failures else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        console.failure(line)
+    return console.FAILED if failures else console.GOOD

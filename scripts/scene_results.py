@@ -1,4 +1,5 @@
-"""Every bundled scene through RTL, twin and reference: `make results`.
+# SPDX-License-Identifier: MIT
+"""Every bundled scene through RTL, twin and reference: `phong75 scenes`.
 
 Every bundled scene at every promised size through RTL, twin and reference; one row a scene. All
 numbers also go to build/results.json.
@@ -7,17 +8,14 @@ numbers also go to build/results.json.
 from __future__ import annotations
 
 import json
-import sys
 from dataclasses import dataclass
-
-from rich.console import Console
 
 from phong75.model import twin
 from phong75.model.analysis import error_budget, metrics, reference
 from phong75.model.config import DEFAULT as CONFIG
 from phong75.model.front.scene import bundled_scenes, load_scene
 from phong75.model.scene_to_frame import front_end
-from phong75.scripts import recorded
+from phong75.scripts import console, recorded
 from phong75.scripts.docs import tables
 from phong75.sim.design import BUILD
 from phong75.sim.frame.run_frame import Job, SimResult, simulate_jobs
@@ -83,27 +81,41 @@ def figures(measured: dict[str, list[Result]]) -> dict:
     return {"clock_hz": CLOCK_HZ, "fps": FPS, "scenes": found}
 
 
-def main() -> int:
-    """Print the table of docs/results.md; returns the exit code."""
-    console = Console(stderr=True)
+def failures(found: list[dict]) -> list[str]:
+    """What is wrong with the rows of `as_dict`, a line each."""
+    return [
+        f"{row['scene']}, {row['size']}: {row['mismatches']} pixels differ, largest error "
+        f"{row['max_lsb']:.4f} LSB, bound {row['bound_lsb']:.4f}"
+        for row in found
+        if row["mismatches"] or row["max_lsb"] > row["bound_lsb"]
+    ]
+
+
+def main(record: bool) -> int:
+    """Print the table of docs/results.md; returns the exit code. Raises BuildError,
+    SimulationError."""
+    recorded.check(record)
     measured = {}
     for scene in bundled_scenes():
-        console.print(f"{scene} ...")
+        console.phase(scene)
         measured[scene] = measure(scene)
     found = figures(measured)
-    said = {
+    rows = [run for runs in found["scenes"].values() for run in runs]
+    about = {
         "schema": SCHEMA,
         "fps": FPS,
         "clock_hz": CLOCK_HZ,
         "cycles_available": int(CLOCK_HZ // FPS),
     }
-    rows = [run for runs in found["scenes"].values() for run in runs]
-    BUILD.mkdir(exist_ok=True)
-    (BUILD / "results.json").write_text(json.dumps(said | {"rows": rows}, indent=1) + "\n")
-    recorded.save("scenes", "make results", ("verilator", "numpy"), found)
-    print(tables.scenes(found))
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    BUILD.mkdir(parents=True, exist_ok=True)
+    (BUILD / "results.json").write_text(json.dumps(about | {"rows": rows}, indent=1) + "\n")
+    console.say(tables.scenes(found))
+    wrong = failures(rows)
+    if record:
+        recorded.record(
+            "scenes", "make scenes", ("verilator", "numpy"), found, {"frames": len(rows)},
+            failed=bool(wrong),
+        )  # fmt: skip
+    for line in wrong:
+        console.failure(line)
+    return console.FAILED if wrong else console.GOOD

@@ -1,4 +1,5 @@
-"""Stiff and extreme cases through RTL, model and reference: `make stability`.
+# SPDX-License-Identifier: MIT
+"""Stiff and extreme cases through RTL, model and reference: `phong75 stability`.
 
 Prints a row a case and the table of errors (derived bound, worst of the bundled scenes, worst
 input found), and writes both to build/stability/report.json. Exit code: 0, 1 if a row fails, 2.
@@ -7,7 +8,6 @@ input found), and writes both to build/stability/report.json. Exit code: 0, 1 if
 from __future__ import annotations
 
 import json
-import sys
 import time
 
 import numpy as np
@@ -19,12 +19,10 @@ from phong75.model.analysis.run_report import versions
 from phong75.model.config import DEFAULT as C
 from phong75.model.front.scene import bundled_scenes
 from phong75.model.studies import adversarial, corner_cases
-from phong75.scripts import recorded
-from phong75.scripts.run import Steps
-from phong75.sim.build import BuildError
+from phong75.scripts import console, recorded
+from phong75.scripts.console import Steps
 from phong75.sim.design import BUILD
 from phong75.sim.frame import corner_cases as simulated
-from phong75.sim.frame.run_frame import SimulationError
 
 #: Version of the layout of report.json.
 SCHEMA = 2
@@ -193,17 +191,17 @@ def run(steps: Steps) -> dict:
     with steps.step("frames"):
         cases = corner_cases.cases() + adversarial_cases()
         scenes = [simulated.scene_case(name) for name in bundled_scenes()]
-    with steps.step("cases") as progress:
+    with steps.step("cases"):
         rows = simulated.run_cases(cases)
     worst = rows[-len(adversarial.FAMILIES) :]
     with steps.step("scenes"):
         results = simulated.results(scenes)
         rows += [simulated.judge(c, [r]) for c, r in zip(scenes, results, strict=True)]
         errors = error_rows(scene_errors(scenes, results), worst)
-    with steps.step("shared_edges") as progress:
-        rows.append(simulated.shared_edges(MESHES, progress))
-    with steps.step("powers") as progress:
-        powers = adversarial.power_errors(progress)
+    with steps.step("shared_edges") as step:
+        rows.append(simulated.shared_edges(MESHES, step.done))
+    with steps.step("powers") as step:
+        powers = adversarial.power_errors(step.done)
         rows.append(power_row(powers))
     with steps.step("long_run"):
         rows.append(simulated.long_run(LONG_RUN))
@@ -226,32 +224,29 @@ def figures(report: dict) -> dict:
     return {"rows": rows} | {name: report[name] for name in ("errors", "powers", "amm_2012_at_20")}
 
 
-def main() -> int:
-    """Run, print, write; returns the exit code."""
+def main(record: bool) -> int:
+    """Run, print, write; returns the exit code. Raises BuildError, SimulationError."""
+    recorded.check(record)
     begin = time.perf_counter()
-    try:
-        report = run(Steps())
-        OUT.mkdir(parents=True, exist_ok=True)
-        part = OUT / "report.json.part"
-        part.write_text(json.dumps(report, indent=1, allow_nan=False) + "\n")
-        part.replace(OUT / "report.json")
-    except (BuildError, SimulationError, OSError) as error:
-        print(str(error).partition("\n")[0], file=sys.stderr)
-        return 2
-    recorded.save("stability", "make stability", ("verilator", "numpy"), figures(report))
-    console = Console()
-    for table in (
+    report = run(Steps())
+    OUT.mkdir(parents=True, exist_ok=True)
+    part = OUT / "report.json.part"
+    part.write_text(json.dumps(report, indent=1, allow_nan=False) + "\n")
+    part.replace(OUT / "report.json")
+    console.show(
         case_table(report["rows"]), error_table(report["errors"]), power_table(report["powers"])
-    ):  # fmt: skip
-        console.print(table)
+    )
     failed = [row for row in report["rows"] if row["failures"]]
-    print(f"{len(report['rows'])} rows, {len(failed)} failed, {time.perf_counter() - begin:.0f} s; "
-          f"{OUT.relative_to(BUILD.parent)}/report.json")  # fmt: skip
+    if record:
+        recorded.record(
+            "stability", "make stability", ("verilator", "numpy"), figures(report),
+            {"cases": len(report["rows"])}, failed=bool(failed),
+        )  # fmt: skip
+    console.say(
+        f"{len(report['rows'])} rows, {len(failed)} failed, {time.perf_counter() - begin:.0f} s; "
+        f"{console.shown(OUT)}/report.json"
+    )
     for row in failed:
         for line in row["failures"]:
-            print(f"FAILED: {row['case']}: {line}", file=sys.stderr)
-    return 1 if failed else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+            console.failure(f"{row['case']}: {line}")
+    return console.FAILED if failed else console.GOOD

@@ -1,64 +1,32 @@
-"""Synthesize, place and route a configuration for an ECP5 and report: `make synth`.
+# SPDX-License-Identifier: MIT
+"""Synthesize, place and route a configuration for an ECP5 and report: `phong75 synth`.
 
-Exit code: 0; 1 if a tool failed; 2 if the input is wrong, with one line on stderr that says what.
+Exit code: 0; 2 if the input is wrong or a tool failed, with one line on stderr that says what.
 """
 
 from __future__ import annotations
 
-import argparse
 import dataclasses
-import sys
 from pathlib import Path
 
-from rich.console import Console
 from rich.table import Table
 
 from phong75.model.analysis.pruning import prune
-from phong75.model.config import DEFAULT, TECHNIQUES, Config
+from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import InputError
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
-from phong75.scripts import recorded
-from phong75.scripts.run import Steps
+from phong75.scripts import console, recorded
+from phong75.scripts.console import Steps
 from phong75.scripts.synthesis import ecp5
 
-CONFIGS = {config.name: config for config in TECHNIQUES.values()}
 
-
-class _Parser(argparse.ArgumentParser):
-    """Reports a wrong command line like any other wrong input."""
-
-    def error(self, message):
-        raise InputError(message)
-
-
-def parse(argv) -> tuple[Config, int, tuple[int, ...], bool]:
-    """Configuration, speed grade, seeds, and whether to count gates. Raises InputError."""
-    parser = _Parser(prog="synth", description=__doc__.partition("\n")[0])
-    parser.add_argument("--config", default="", help="name of a configuration")
-    parser.add_argument("--scene", default="", help="build only what this scene needs")
-    parser.add_argument("--grade", default="", help="speed grade of the chip")
-    parser.add_argument("--seeds", default="", help="how many seeds to route")
-    parser.add_argument("--gates", default="", help="1: count gate equivalents, too")
-    given = parser.parse_args(argv)
-    name, grade, seeds = given.config or "default", given.grade or "6", given.seeds or "3"
-    if name not in CONFIGS:
-        raise InputError(f"CONFIG is `{name}`; there is {', '.join(CONFIGS)}")
-    if grade not in map(str, ecp5.GRADES):
-        raise InputError(f"GRADE is `{grade}`; it must be 6 or 8")
-    if not (seeds.isascii() and seeds.isdigit() and 1 <= int(seeds) <= 100):
-        raise InputError(f"SEEDS is `{seeds}`, not a number from 1 to 100")
-    if given.gates not in ("", "0", "1"):
-        raise InputError(f"GATES is `{given.gates}`, not 0 or 1")
-    if given.gates == "1" and not ecp5.LIBERTY.is_file():
-        raise InputError("GATES=1 needs a library of cells: apt-get install qflow-tech-osu018")
-    config = CONFIGS[name]
-    if given.scene:
-        frame = front_end(load_scene(given.scene, config=config), config).frame
-        config = dataclasses.replace(
-            prune(frame, config)[0], name=f"{name}-{Path(given.scene).stem}"
-        )
-    return config, int(grade), tuple(range(1, int(seeds) + 1)), given.gates == "1"
+def pruned(config: Config, scene: str) -> Config:
+    """`config` with what `scene` needs of it only; itself if `scene` is "". Raises InputError."""
+    if not scene:
+        return config
+    frame = front_end(load_scene(scene, config=config), config).frame
+    return dataclasses.replace(prune(frame, config)[0], name=f"{config.name}-{Path(scene).stem}")
 
 
 def table(report: dict) -> Table:
@@ -108,27 +76,24 @@ def effort(report: dict) -> dict[str, int]:
     return {"seeds": len(report["seeds"]), "gates": int("gates" in report)}
 
 
-def main(argv=None) -> int:
-    """Run with the command line `argv`; returns the exit code."""
-    try:
-        config, grade, seeds, gates = parse(argv)
-    except InputError as error:
-        print(f"Error: {error}", file=sys.stderr)
-        return 2
-    steps = Steps()
-    try:
-        report = ecp5.run(config, grade, seeds, gates, steps.step)
-    except ecp5.SynthesisError as error:
-        print(f"Error: {error}", file=sys.stderr)
-        return 1
-    Console().print(table(report))
-    if config == DEFAULT:
-        packages = tuple(report["tools"])
-        command = "make synth" + (f" GRADE={grade}" if grade != 6 else "")
-        recorded.save(f"synth-grade{grade}", command, packages, figures(report), effort(report))
-    print(f"build/synth/{config.name}/report.json")
-    return 0
+def main(config: Config, grade: int, seeds: int, count_gates: bool, record: bool) -> int:
+    """Synthesize and route `config` with seeds 1 to `seeds`; returns the exit code.
 
-
-if __name__ == "__main__":
-    sys.exit(main())
+    Raises InputError, SynthesisError.
+    """
+    recorded.check(record)
+    if count_gates and not ecp5.LIBERTY.is_file():
+        raise InputError("--gates needs a library of cells: apt-get install qflow-tech-osu018")
+    report = ecp5.run(config, grade, tuple(range(1, seeds + 1)), count_gates, Steps().step)
+    console.show(table(report))
+    if record:
+        recorded.record(
+            f"synth-grade{grade}",
+            "make synth" + (f" GRADE={grade}" if grade != 6 else ""),
+            tuple(report["tools"]),
+            figures(report),
+            effort=effort(report),
+            part="" if config == DEFAULT else f"{config.name} is not the default configuration",
+        )
+    console.say(console.shown(ecp5.FOLDER / config.name / "report.json"))
+    return console.GOOD

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A waveform of a short run with one module's signals grouped for GTKWave: `make waves MODULE=`.
+"""A waveform of a short run with one module's signals grouped for GTKWave: `phong75 waves MODULE`.
 
 The whole pipeline runs a picture of 64 x 32 pixels, whose spans have up to 27 pixels. Writes
 build/waves/<module>.fst and .gtkw. The waveform has every signal of the design, and the fields of
@@ -15,7 +15,6 @@ import os
 import re
 import shlex
 import shutil
-import sys
 import tempfile
 from pathlib import Path
 
@@ -24,11 +23,13 @@ from phong75.model.config import Config
 from phong75.model.frame import InputError
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
+from phong75.scripts import console
+from phong75.scripts.configurations import unknown
 from phong75.sim import design
-from phong75.sim.build import Bench, BuildError
+from phong75.sim.build import Bench
 from phong75.sim.design import BUILD, PACKAGE
 from phong75.sim.frame import waveform
-from phong75.sim.frame.run_frame import Job, SimulationError, simulate_jobs
+from phong75.sim.frame.run_frame import Job, simulate_jobs
 from phong75.sim.frame.waveform import Scope, Waveform
 
 TOP = "phong_pipeline"
@@ -88,7 +89,7 @@ def save_file(wave: Waveform, module: str, config: Config) -> str:
 def _unknown(module: str) -> InputError:
     """The error for a `module` that is not part of what runs."""
     known = sorted(file.stem for file in design.sources() if instances(file.stem))
-    return InputError(f"MODULE is `{module}`, not one of {', '.join(known)}")
+    return unknown("MODULE", module, known)
 
 
 def _view(wave: Waveform) -> list[str]:
@@ -168,7 +169,7 @@ def record(module: str, config: Config = CONFIG, folder: Path = BUILD / "waves")
     bench = Bench(waveform.BENCH, config, trace=True)
     with tempfile.TemporaryDirectory(dir=folder) as scratch:
         vcd = Path(scratch, "run.vcd")
-        simulate_jobs([Job(frame)], config, bench, waves=vcd)
+        simulate_jobs([Job(frame)], config, bench, waves=vcd, progress=console.phase)
         wave = waveform.split(vcd, folder / module, config)
     wave.path.with_suffix(".gtkw").write_text(save_file(wave, module, config))
     return wave
@@ -189,16 +190,10 @@ def command(wave: Waveform) -> str:
     return "\n".join([text, *notes])
 
 
-def main(argv: list[str]) -> int:
-    """Write the two files; returns the exit code."""
-    try:
-        wave = record(argv[0] if argv else TOP)
-    except (InputError, BuildError, SimulationError, OSError) as error:
-        print(error, file=sys.stderr)
-        return 2
-    print(command(wave))
-    return 0
+def main(module: str, config: Config) -> int:
+    """Write the two files; returns the exit code.
 
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    Raises InputError if `module` is no part of `config`; BuildError, SimulationError.
+    """
+    console.say(command(record(module, config)))
+    return console.GOOD

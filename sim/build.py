@@ -17,7 +17,7 @@ import hashlib
 import os
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
@@ -28,7 +28,7 @@ from cocotb_tools.runner import Verilator
 
 from phong75.model.config import DEFAULT, Config
 from phong75.model.verilog import header
-from phong75.sim import design
+from phong75.sim import design, environment
 from phong75.sim.design import BUILD, SIM
 
 #: Folder of the object files that all benches share.
@@ -42,11 +42,8 @@ _INCLUDE = _VERILATOR_ROOT / "include"
 _LIBS = cocotb_tools.config.libs_dir
 _RUNTIME = (
     "verilated", "verilated_vpi", "verilated_dpi", "verilated_threads", "verilated_vcd_c",
-    "verilated_cov",
+    "verilated_cov", "verilated_timing",
 )  # fmt: skip
-
-#: Environment variable that names a folder for coverage counts; if set, every bench counts.
-COVERAGE = "PHONG_COVERAGE"
 
 
 #: Folders of the hand-written Verilog top levels.
@@ -67,6 +64,10 @@ def top_file(top: str, rtl: Path | None = None) -> Path:
         if file.stem == top:
             return file
     raise BuildError(f"no Verilog file of {top} in sim/ or in the design")
+
+
+def silent(text: str) -> None:
+    """Show nothing: what a function calls with the name of its phase where nobody looks."""
 
 
 class BuildError(Exception):
@@ -133,14 +134,25 @@ def generate_header(config: Config = DEFAULT) -> Path:
     return folder
 
 
+def _runtime_sources() -> list[Path]:
+    return [_INCLUDE / f"{name}.cpp" for name in _RUNTIME]
+
+
+def _runtime_library() -> Path:
+    return SHARED / digest(CXX_FLAGS, *_runtime_sources()) / "libverilated.a"
+
+
+def runtime_built() -> bool:
+    """Whether the library of Verilator's runtime is there already."""
+    return _runtime_library().is_file()
+
+
 def runtime() -> Path:
     """The library of Verilator's runtime, compiled if necessary. Raises BuildError."""
-    sources = [_INCLUDE / f"{name}.cpp" for name in _RUNTIME]
-    folder = SHARED / digest(CXX_FLAGS, *sources)
-    library = folder / "libverilated.a"
-    with locked(folder):
+    library = _runtime_library()
+    with locked(library.parent):
         if not library.is_file():
-            _compile_runtime(sources, library)
+            _compile_runtime(_runtime_sources(), library)
     return library
 
 
@@ -218,7 +230,7 @@ class Bench(Verilator):
         self._rtl = rtl or design.RTL
         self._texts = dict(sources or {})
         self._written: list[Path] = []
-        wanted = coverage or os.environ.get(COVERAGE)
+        wanted = coverage or os.environ.get(environment.COVERAGE)
         self._coverage = Path(wanted).resolve() if wanted else None
         include = generate_header(config)
         files = [
@@ -274,10 +286,16 @@ class Bench(Verilator):
         self._written = sorted([*self.folder.glob("Vtop*.cpp"), *self.folder.glob("Vtop*.h")])
         return self._written
 
-    def make(self) -> Path:
-        """Build the simulation program if necessary; returns its folder. Raises BuildError."""
+    def make(self, progress: Callable[[str], None] = silent) -> Path:
+        """Build the simulation program if necessary; returns its folder. Raises BuildError.
+
+        progress: called with what a phase does before each that takes seconds.
+        """
         if not self.built:
+            if not runtime_built():
+                progress("compiling Verilator's runtime (once)")
             library = runtime()
+            progress("compiling the testbench (once)")
             with locked(self.folder):
                 if not self.built:
                     self._make(library)

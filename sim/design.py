@@ -11,6 +11,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from phong75.sim import environment
+
 #: Root of the package: the checkout, or the folder of the installed package.
 PACKAGE = Path(__file__).resolve().parent.parent
 RTL = PACKAGE / "rtl"
@@ -24,7 +26,7 @@ IN_CHECKOUT = (PACKAGE / "pyproject.toml").is_file()
 
 def _build_folder() -> Path:
     """The build folder: $PHONG75_BUILD, else build/ of a checkout, else the user's cache folder."""
-    if named := os.environ.get("PHONG75_BUILD"):
+    if named := os.environ.get(environment.BUILD):
         return Path(named).resolve()
     if IN_CHECKOUT:
         return PACKAGE / "build"

@@ -32,10 +32,21 @@ def elaborate(top: str, config: Config = DEFAULT, text: str | None = None) -> di
             source = build.top_file(top)
         else:
             source.write_text(text)
+        return _tree([*includes(config), source], top)
+
+
+def elaborated(options: list, top: str) -> Counter[str]:
+    """{module: number of its instances} of any design, given as Verilator's `options` (files, or
+    -F and a file list). Raises BuildError."""
+    return _count(_tree(options, top), top)
+
+
+def _tree(options: list, top: str) -> dict:
+    with tempfile.TemporaryDirectory() as folder:
         run_tool(
             [
                 "verilator", "--json-only", "--no-timing", "-Wno-fatal", "-Wno-lint",
-                "--Mdir", folder, "--top-module", top, *includes(config), source,
+                "--Mdir", folder, "--top-module", top, *options,
             ]
         )  # fmt: skip
         return json.loads(Path(folder, f"V{top}.tree.json").read_text())

@@ -1,10 +1,14 @@
-"""`make run` from the outside: its files, its exit codes, and one clear line for wrong input.
+# SPDX-License-Identifier: MIT
+"""`phong75` from the outside: its files, its exit codes, and one clear line for wrong input.
 
-The RTL is stood in for by the model here; `make run` itself and the tests of whole frames use it.
+The RTL is stood in for by the model here; the tests of whole frames simulate it.
 """
 
+import fcntl
 import json
 import os
+import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -14,10 +18,14 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import phong75
 from phong75.model import twin
-from phong75.model.config import DEFAULT
+from phong75.model.config import DEFAULT, TECHNIQUES
 from phong75.model.spans import read_spans
-from phong75.scripts import run
+from phong75.model.studies.methods import CONFIGS
+from phong75.scripts import console, main, options, run
+from phong75.scripts.configurations import CONFIGURATIONS, GROUPS
+from phong75.sim import design
 from phong75.sim.build import BuildError
 from phong75.sim.frame.run_frame import SimResult, SimulationError
 
@@ -37,7 +45,8 @@ rings = 8
 
 def perfect(path, frame, config, progress):
     """A simulation that does what the model does."""
-    assert np.array_equal(read_spans(path, config).spans, frame.spans)
+    if config.normal_method != "quadratic_spans":  # whose spans are not read back
+        assert np.array_equal(read_spans(path, config).spans, frame.spans)
     pixels = twin.render(frame, config)
     cycles = len(pixels.x) + LATENCY if len(pixels.x) else 0
     return SimResult(pixels, True, cycles, LATENCY, 0, 0, 0, 0.5, 0.25)
@@ -62,14 +71,25 @@ def scene(tmp_path):
 
 
 @pytest.fixture
-def start(tmp_path, capsys):
-    """Run the program: (exit code, stdout, lines of stderr without those that show progress)."""
+def phong(capsys):
+    """Run the command line: (exit code, stdout, lines of stderr without those of progress)."""
 
-    def start(*arguments, simulate=perfect, out=tmp_path / "out"):
-        code = run.main([*(str(a) for a in arguments), f"--out={out}"], simulate)
+    def phong(*arguments):
+        code = main.main([str(argument) for argument in arguments])
         shown = capsys.readouterr()
         lines = [x for x in shown.err.splitlines() if not x.endswith(" ...")]
         return code, shown.out, lines
+
+    return phong
+
+
+@pytest.fixture
+def start(tmp_path, phong, monkeypatch):
+    """`phong75 run` with `simulate` in place of the RTL."""
+
+    def start(*arguments, simulate=perfect, out=tmp_path / "out"):
+        monkeypatch.setattr(run.run_frame, "simulate", simulate)
+        return phong("run", *arguments, f"--out={out}")
 
     return start
 
@@ -78,7 +98,7 @@ def start(tmp_path, capsys):
 
 
 def test_a_good_run(start, scene, tmp_path):
-    code, shown, lines = start(f"--scene={scene}")
+    code, shown, lines = start(scene)
     assert (code, lines) == (0, [])
     assert sorted(p.name for p in (tmp_path / "out").iterdir()) == FILES
     assert "0 pixels differ" in shown and "FAILED" not in shown
@@ -121,7 +141,7 @@ def test_a_good_run(start, scene, tmp_path):
 def test_two_runs_differ_in_wall_times_only(start, scene, tmp_path):
     contents = []
     for name in "ab":
-        start(f"--scene={scene}", out=tmp_path / name)
+        start(scene, out=tmp_path / name)
         files = {f: (tmp_path / name / f).read_bytes() for f in FILES}
         report = json.loads(files.pop("report.json"))
         assert report.pop("wall_s")
@@ -130,9 +150,9 @@ def test_two_runs_differ_in_wall_times_only(start, scene, tmp_path):
 
 
 def test_a_span_file_instead_of_a_scene(start, scene, tmp_path):
-    start(f"--scene={scene}", out=tmp_path / "first")
+    start(scene, out=tmp_path / "first")
     spans = tmp_path / "first" / "spans"
-    code, _, lines = start("--scene=teapot", f"--spans={spans}", out=tmp_path / "second")
+    code, _, lines = start("teapot", f"--spans={spans}", out=tmp_path / "second")
     assert (code, lines) == (0, [])
     for name in ("frame.png", "reference.png", "error.png", "spans"):
         assert (tmp_path / "second" / name).read_bytes() == spans.with_name(name).read_bytes()
@@ -145,7 +165,7 @@ def test_a_span_file_instead_of_a_scene(start, scene, tmp_path):
 def test_an_empty_frame_is_good(start, scene, tmp_path):
     camera = '[camera]\nprojection = "orthographic"\neye = [0, 0, 99]\ntarget = [50, 0, 99]\n'
     scene.write_text(SMALL.replace("[[", f"{camera}up = [0, 1, 0]\nheight = 2\n[[", 1))
-    code, _, lines = start(f"--scene={scene}")
+    code, _, lines = start(scene)
     assert (code, lines) == (0, [])
     report = json.loads((tmp_path / "out/report.json").read_text())
     assert (report["pixels"], report["spans"], report["cycles"]) == (0, 0, 0)
@@ -156,7 +176,7 @@ def test_an_empty_frame_is_good(start, scene, tmp_path):
 
 
 def test_size_fps_and_clock(start, scene, tmp_path):
-    assert start(f"--scene={scene}", "--size=9x7", "--fps=59.94", "--clock-mhz=0.1")[0] == 0
+    assert start(scene, "--size=9x7", "--fps=59.94", "--clock=0.1")[0] == 0
     report = json.loads((tmp_path / "out/report.json").read_text())
     assert report["size"] == [9, 7]
     assert report["budget"]["cycles_available"] == int(100_000 / 59.94)
@@ -165,27 +185,26 @@ def test_size_fps_and_clock(start, scene, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "out"),
     [
-        ([], "build/teapot"),
-        (["--scene=", "--size=", "--spans=", "--out="], "build/teapot"),
-        (["--scene=some where/my mesh.v2.obj"], "build/my mesh.v2"),
-        (["--spans=a/frame.spans"], "build/frame"),
-        (["--spans=a/spans", "--out=-x"], "-x"),
-        (["--scene=cone", "--technique=gouraud"], "build/cone-gouraud"),
-        (["--technique=flat", "--out=here"], "here"),
-        (["--technique="], "build/teapot"),
+        ({}, "build/teapot"),
+        ({"scene": "some where/my mesh.v2.obj"}, "build/my mesh.v2"),
+        ({"spans": Path("a/frame.spans")}, "build/frame"),
+        ({"spans": Path("a/spans"), "out": Path("-x")}, "-x"),
+        ({"scene": "cone", "config": TECHNIQUES["gouraud"]}, "build/cone-gouraud"),
+        ({"config": TECHNIQUES["flat"], "out": Path("here")}, "here"),
+        ({"config": CONFIGS["dot_first_14"]}, "build/teapot-dot_first_14"),
     ],
 )
 def test_where_the_results_go(arguments, out):
-    assert run.parse(arguments).out == Path(out)
+    assert run.request(**arguments).out == Path(out)
 
 
 def test_a_pruned_run(start, scene, tmp_path):
-    code, shown, lines = start(f"--scene={scene}", "--prune=1")
+    code, shown, lines = start(scene, "--prune=self")
     assert (code, lines) == (0, [])
     report = json.loads((tmp_path / "out/report.json").read_text())
     assert report["config"]["name"] == "default-pruned" and report["unsupported"] == 0
     assert report["config"]["weight_function"] is False
-    code, _, _ = start(f"--scene={scene}", "--prune=0")
+    code, _, _ = start(scene, "--prune=0")
     assert code == 0
     assert json.loads((tmp_path / "out/report.json").read_text())["config"]["name"] == "default"
 
@@ -194,11 +213,11 @@ def test_a_pruned_run(start, scene, tmp_path):
 def test_the_older_techniques_can_be_pruned_to_grey(start, scene, tmp_path, technique):
     grey = tmp_path / "grey.toml"
     grey.write_text(SMALL + "material = { color = [0.5, 0.5, 0.5] }\n")
-    code, _, lines = start(f"--scene={grey}", f"--technique={technique}", "--prune=1")
+    code, _, lines = start(grey, f"--technique={technique}", "--prune=self")
     assert (code, lines) == (0, [])
     report = json.loads((tmp_path / "out/report.json").read_text())
     assert (report["technique"], report["config"]["channels"]) == (technique, 1)
-    refused = start(f"--scene={scene}", f"--technique={technique}", f"--prune={grey}")
+    refused = start(scene, f"--technique={technique}", f"--prune={grey}")
     assert_refused(refused, "its spans have no place for this scene: channels: red, green and blue")
 
 
@@ -224,7 +243,7 @@ def far_away(result):
 
 @pytest.mark.parametrize("change", [wrong_colour, lost_pixel, extra_pixel, far_away])
 def test_a_mismatch(start, scene, tmp_path, change):
-    code, shown, lines = start(f"--scene={scene}", simulate=broken(change))
+    code, shown, lines = start(scene, simulate=broken(change))
     assert code == 1 and "FAILED" in shown
     assert any(x.startswith("FAILED: 1 of ") and x.endswith("model differ") for x in lines)
     report = json.loads((tmp_path / "out/report.json").read_text())
@@ -232,12 +251,12 @@ def test_a_mismatch(start, scene, tmp_path, change):
 
 
 def test_a_mismatch_says_where(start, scene):
-    _, _, lines = start(f"--scene={scene}", simulate=broken(wrong_colour))
+    _, _, lines = start(scene, simulate=broken(wrong_colour))
     assert "pixel 5 of the stream: model x " in "".join(lines)
 
 
 def test_a_missed_budget(start, scene, tmp_path):
-    code, _, lines = start(f"--scene={scene}", "--fps=1000000")
+    code, _, lines = start(scene, "--fps=1000000")
     assert code == 1 and len(lines) == 1
     assert lines[0].startswith("FAILED: the frame takes ")
     assert lines[0].endswith("200 are there at 1e+06 frames a second")
@@ -247,7 +266,7 @@ def test_a_missed_budget(start, scene, tmp_path):
 def test_a_missed_bound(start, scene, monkeypatch):
     """RTL and model agree, but both are wrong."""
     monkeypatch.setattr(run.error_budget, "bound_lsb", lambda frame, config: 0.25)
-    code, _, lines = start(f"--scene={scene}")
+    code, _, lines = start(scene)
     assert code == 1 and len(lines) == 1
     assert lines[0].startswith("FAILED: the largest error is ") and "bound 0.25" in lines[0]
 
@@ -258,7 +277,7 @@ def test_a_build_pruned_to_another_scene(start):
     def flagged(result):
         result.unsupported = 32
 
-    arguments = "--scene=torus", "--size=32x24", "--prune=teapot"
+    arguments = "torus", "--size=32x24", "--prune=teapot"
     code, _, lines = start(*arguments, simulate=broken(flagged))
     assert code == 1
     assert "left out, but needed: weight_function: W depends on i in 1 of 1 material" in lines
@@ -278,27 +297,31 @@ def assert_refused(found, says):
 @pytest.mark.parametrize(
     ("argument", "says"),
     [
-        ("--size=640", "SIZE is `640`, not WIDTHxHEIGHT such as 640x480"),
-        ("--size=640x", "SIZE is `640x`"),
-        ("--size=640X480", "SIZE is `640X480`"),
-        ("--size=-1x480", "SIZE is `-1x480`"),
-        ("--size=6.5x480", "SIZE is `6.5x480`"),
-        ("--size=٣x٣", "SIZE is `٣x٣`"),
-        ("--size=0x480", "SIZE is 0x480: each side must be from 1 to 4096"),
-        ("--size=640x0", "SIZE is 640x0"),
-        ("--size=640x4097", "SIZE is 640x4097"),
-        ("--fps=0", "FPS is `0`, not a number from 1e-9 to 1e9"),
-        ("--fps=fast", "FPS is `fast`"),
-        ("--fps=nan", "FPS is `nan`"),
-        ("--clock-mhz=-200", "CLOCK_MHZ is `-200`"),
-        ("--clock-mhz=inf", "CLOCK_MHZ is `inf`"),
-        ("--clock-mhz=1e308", "CLOCK_MHZ is `1e308`"),
-        ("--technique=Phong", "TECHNIQUE is `Phong`, not one of phong, gouraud, flat"),
-        ("--scene=teapto", "teapot"),
-        ("--scene=nowhere/scene.toml", "nowhere/scene.toml: no such file"),
-        ("--scene=nowhere.obj", "nowhere.obj: no such file"),
+        ("--size=640", "--size is `640`, not WIDTHxHEIGHT such as 640x480"),
+        ("--size=640x", "--size is `640x`"),
+        ("--size=640X480", "--size is `640X480`"),
+        ("--size=-1x480", "--size is `-1x480`"),
+        ("--size=6.5x480", "--size is `6.5x480`"),
+        ("--size=٣x٣", "--size is `٣x٣`"),
+        ("--size=0x480", "--size is 0x480: each side must be from 1 to 4096"),
+        ("--size=640x0", "--size is 640x0"),
+        ("--size=640x4097", "--size is 640x4097"),
+        ("--fps=0", "--fps is `0`, not a number from 1e-9 to 1e9"),
+        ("--fps=fast", "--fps is `fast`"),
+        ("--fps=nan", "--fps is `nan`"),
+        ("--clock=-200", "--clock is `-200`"),
+        ("--clock=inf", "--clock is `inf`"),
+        ("--clock=1e308", "--clock is `1e308`"),
+        ("--technique=Phong", "--technique: there is no `Phong`; did you mean phong?"),
+        ("--technique=ray", "--technique: there is no `ray`; there is phong, gouraud, flat"),
+        ("--config=quadratic_18", "no `quadratic_18`; did you mean quadratic_spans_18?"),
+        ("--config=x", "--config: there is no `x`; `phong75 configs` lists them"),
+        ("teapto", "did you mean teapot?"),
+        ("nowhere/scene.toml", "nowhere/scene.toml: no such file"),
+        ("nowhere.obj", "nowhere.obj: no such file"),
         ("--spans=nowhere", "cannot read nowhere: No such file"),
-        ("--colour=red", "unrecognized arguments: --colour=red"),
+        ("--colour=red", "No such option: --colour"),
+        ("--szie=3x3", "No such option: --szie (Possible options: --size)"),
     ],
 )
 def test_wrong_arguments(start, argument, says):
@@ -337,7 +360,7 @@ MATERIAL = '[materials.m]\n{}\n[[objects]]\nshape = "sphere"\nmaterial = "m"\n'
 def test_wrong_files(start, tmp_path, name, text, says):
     path = tmp_path / name
     path.write_text(text, errors="surrogateescape")
-    assert_refused(start(f"--scene={path}"), says)
+    assert_refused(start(path), says)
     assert not (tmp_path / "out").exists(), "nothing is left half-written"
 
 
@@ -351,24 +374,117 @@ def test_a_wrong_span_file(start, tmp_path):
 def test_results_that_cannot_be_written(start, scene, tmp_path):
     (tmp_path / "file").touch()
     for out in (tmp_path / "file", tmp_path / "file" / "below"):
-        assert_refused(start(f"--scene={scene}", out=out), f"cannot write to OUT {out}: ")
+        assert_refused(start(scene, out=out), f"cannot write to --out {out}: ")
     (tmp_path / "out" / "frame.png").mkdir(parents=True)
-    assert_refused(start(f"--scene={scene}"), "frame.png: Is a directory")
+    assert_refused(start(scene), "frame.png: Is a directory")
 
 
 @pytest.mark.parametrize("kind", [BuildError, SimulationError])
 def test_a_set_up_that_does_not_work(start, scene, tmp_path, monkeypatch, kind):
-    monkeypatch.setattr(run, "BUILD", tmp_path)
+    monkeypatch.setattr(design, "BUILD", tmp_path)
 
     def simulate(*arguments):
         raise kind("g++ failed:\nno room\nat all")
 
     out = tmp_path / "out"
-    start(f"--scene={scene}")
+    start(scene)
     before = {path.name: path.read_bytes() for path in out.iterdir()}
-    assert_refused(start(f"--scene={scene}", simulate=simulate), "Error: g++ failed; more is in ")
+    assert_refused(start(scene, simulate=simulate), "Error: g++ failed; more is in ")
     assert (tmp_path / "failure.log").read_text() == "g++ failed:\nno room\nat all\n"
     assert {path.name: path.read_bytes() for path in out.iterdir()} == before
+
+
+def test_two_runs_into_one_folder(start, scene, tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    with open(out / ".lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        assert_refused(start(scene), f"another run writes to --out {out}: wait for it")
+    # The process that held the lock has ended without removing its file.
+    assert start(scene)[0] == 0
+    assert sorted(path.name for path in out.iterdir()) == FILES
+
+
+def test_what_is_no_user_error_is_not_hidden():
+    def broken():
+        raise RuntimeError("a defect of the program")
+
+    with pytest.raises(RuntimeError):
+        console.exit_code(broken)
+
+
+def test_ctrl_c(start, scene, tmp_path):
+    def interrupted(*arguments):
+        raise KeyboardInterrupt
+
+    code, shown, lines = start(scene, simulate=interrupted)
+    assert (code, shown, lines) == (130, "", [])
+    assert not (tmp_path / "out").exists()
+
+
+# -- configurations by name ------------------------------------------------------------------------
+
+
+def test_every_name_of_the_tables_can_be_asked_for(phong):
+    code, shown, _ = phong("configs")
+    names = [line.strip() for line in shown.splitlines() if line.startswith("  ")]
+    assert code == 0 and len(names) == len(set(names)) == sum(map(len, GROUPS.values()))
+    assert {*CONFIGS, "gouraud", "flat", "paper", "diffuse", "diffuse_grey"} <= set(names)
+    assert options.configuration(None, "diffuse grey").channels == 1
+    assert options.configuration(None, "diffuse-grey") is CONFIGURATIONS["diffuse_grey"]
+
+
+@pytest.mark.parametrize("name", ["quadratic_spans_18", "not_normalized", "width_12", "paper"])
+def test_a_run_of_a_configuration(start, scene, tmp_path, name):
+    code, shown, lines = start(scene, f"--config={name}")
+    assert (code, lines) == (0, [])
+    report = json.loads((tmp_path / "out/report.json").read_text())
+    assert report["config"]["name"] == name
+    bounded = report["error"]["bound_lsb"] is not None
+    assert bounded != ("no bound derived" in shown)
+    assert bounded == (name != "not_normalized")
+
+
+def test_technique_and_config_exclude_each_other(start, scene):
+    refused = start(scene, "--technique=flat", "--config=gouraud")
+    assert_refused(refused, "--technique and --config both name what to build")
+
+
+# -- the command line itself -----------------------------------------------------------------------
+
+
+def test_version_and_help(phong):
+    assert phong("--version") == (0, f"phong75 {phong75.__version__}\n", [])
+    code, shown, _ = phong()
+    assert code == 0 and shown == phong("--help")[1] == phong("-h")[1]
+    for command in FORWARDED:
+        assert re.search(rf"^  {command} ", shown, re.MULTILINE), command
+
+
+def test_a_misspelt_command(phong):
+    assert phong("rnu") == (2, "", ["Error: No such command 'rnu'. Did you mean 'run'?"])
+
+
+def test_completion_by_tab():
+    assert options.scenes("s")[:2] == ["sphere", "still_life"]
+    assert options.configs("quad")[0].startswith("quadratic_spans_")
+    assert options.techniques("g") == ["gouraud"]
+    assert "span_walker" in options.modules("span")
+
+
+def test_a_phase_says_what_it_does(scene, tmp_path, monkeypatch, capsys):
+    def slow(path, frame, config, progress):
+        progress("compiling the testbench (once)")
+        progress("simulating")
+        return perfect(path, frame, config, progress)
+
+    monkeypatch.setattr(run.run_frame, "simulate", slow)
+    assert main.main(["run", str(scene), f"--out={tmp_path / 'out'}"]) == 0
+    phases = [x for x in capsys.readouterr().err.splitlines() if x.endswith(" ...")]
+    assert phases == [
+        "front end ...", "model ...", "compiling the testbench (once) ...", "simulating ...",
+        "reference ...", "pictures ...",
+    ]  # fmt: skip
 
 
 # -- the real programs -----------------------------------------------------------------------------
@@ -383,23 +499,103 @@ def outside(*command, **environment):
 
 
 def test_the_program_without_traceback():
-    done = outside(sys.executable, "-m", "phong75.scripts.run", "--size=0x0")
+    done = outside(sys.executable, "-m", "phong75.scripts.main", "run", "--size=0x0")
     assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr == "Error: SIZE is 0x0: each side must be from 1 to 4096\n"
+    assert done.stderr == "Error: --size is 0x0: each side must be from 1 to 4096\n"
 
 
-def test_make_passes_arguments_and_exit_codes_on():
+def test_help_needs_no_model():
+    code = (
+        "import sys; from phong75.scripts.main import main; main(['run', '--help']); "
+        "print(*sorted({'numpy', 'rich', 'cocotb', 'matplotlib'} & set(sys.modules)))"
+    )
+    done = outside(sys.executable, "-c", code)
+    assert "--technique" in done.stdout and done.stdout.splitlines()[-1] == ""
+
+
+def make(*arguments):
+    """What `make` would run, without running it."""
+    return outside("make", "--dry-run", *arguments)
+
+
+def command_of(done):
+    """The words of the last command that `make` would run."""
+    return shlex.split(done.stdout.replace("\\\n", "").splitlines()[-1])
+
+
+def test_make_passes_arguments_on():
     odd = 'it\'s $(odd) "here".toml'
-    done = outside("make", "run", f"SCENE={odd.replace('$', '$$')}")
-    error, make = done.stderr.splitlines()[-2:]
-    assert error.startswith(f"Error: {odd}: no such file")
-    assert make.startswith("make: *** [Makefile:") and make.endswith("run] Error 2")
+    done = make("run", f"SCENE={odd.replace('$', '$$')}", "SIZE=3x3", "FPS=", "PRUNE=1")
+    assert command_of(done)[1:] == [
+        "-m", "phong75.scripts.main", "run", "--size=3x3", "--prune=1", "--", odd
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["run", "SIZEE=3x3"], "`make run` has no variable SIZEE; it takes SCENE SIZE "),
+        (["lint", "RECORD=1"], "`make lint` has no variable RECORD; it takes none"),
+        (["synth", "RECORD=yes"], "RECORD is `yes`, not 0 or 1"),
+        (["synth", "CONFIG=flat", "AREA=1"], "`make synth` has no variable AREA"),
+    ],
+)
+def test_make_refuses_a_misspelt_variable(arguments, says):
+    done = make(*arguments)
+    assert (done.returncode, done.stdout) == (2, "") and done.stderr.count("\n") == 1
+    assert says in done.stderr
+
+
+def test_make_does_not_look_at_the_environment():
+    done = outside("make", "--dry-run", "run", SIZE="3x3", SCENE="cone")
+    assert "--size" not in done.stdout and "cone" not in done.stdout
+
+
+#: The variables of each target that forwards: those with a value, and those that are 0 or 1.
+FORWARDED = {
+    "run": ("SCENE SIZE TECHNIQUE CONFIG FPS CLOCK_MHZ PRUNE SPANS OUT", ""),
+    "prune": ("SCENE SIZE SEEDS", "GATES RECORD"),
+    "scenes": ("", "RECORD"),
+    "sweep": ("ROUTE", "AREA RECORD"),
+    "tessellation": ("", "RECORD"),
+    "stability": ("", "RECORD"),
+    "adversarial": ("", "KEEP RECORD"),
+    "report": ("", ""),
+    "synth": ("CONFIG SCENE GRADE SEEDS", "GATES RECORD"),
+    "netlist": ("", "RECORD"),
+    "formal": ("", "RECORD"),
+    "activity": ("", "RECORD"),
+    "waves": ("MODULE CONFIG", ""),
+    "bench": ("", "RECORD"),
+    "configs": ("", ""),
+}
+
+
+@pytest.mark.parametrize("target", FORWARDED)
+def test_every_option_that_make_gives_is_one_of_the_command(target, phong):
+    values, flags = (variables.split() for variables in FORWARDED[target])
+    done = make(target, *(f"{v}=6" for v in values), *(f"{v}=1" for v in flags))
+    _, _, program, name, *arguments = command_of(done)
+    assert (program, name) == ("phong75.scripts.main", target)
+    code, text, _ = phong(target, "--help")
+    assert code == 0
+    given = {argument.partition("=")[0] for argument in arguments if argument.startswith("--")}
+    for option in given - {"--"}:
+        assert f" {option} " in text, option
+    positional = int("--" in arguments)
+    both_record = target == "adversarial"
+    assert len(given - {"--"}) + positional == len(values) + len(flags) - both_record
 
 
 def test_make_help_names_every_target():
+    text = (ROOT / "Makefile").read_text()
+    lines = re.findall(r"^\.PHONY: (.*(?:\\\n.*)*)", text, re.MULTILINE)
+    targets = " ".join(lines).replace("\\", " ").split()
     shown = outside("make").stdout
-    for target in ("run", "test", "lint", "bench", "waves", "setup", "clean"):
-        assert f"make {target} " in shown
+    for target in set(targets) - {"help"}:
+        if not target.endswith("-setup"):
+            assert re.search(rf"make {target}(?![-\w])", shown), target
+    assert all(len(line) <= 88 for line in shown.splitlines())
 
 
 @pytest.mark.parametrize("missing", [["g++"], ["perl", "git"]])

@@ -12,7 +12,7 @@ from phong75.model.config import DEFAULT as C
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
 from phong75.model.twin import render
-from phong75.scripts import synth
+from phong75.scripts import main
 from phong75.scripts.synthesis import ecp5 as synthesis
 from phong75.sim import design
 from phong75.sim.build import Bench
@@ -83,10 +83,19 @@ def test_cells_of_a_module(tmp_path):
 
 @pytest.mark.parametrize(
     "arguments",
-    [["--config=nope"], ["--grade=7"], ["--seeds=0"], ["--seeds=x"], ["--what"], ["--config"]],
+    [
+        ["--config=nope"],
+        ["--grade=7"],
+        ["--seeds=0"],
+        ["--seeds=x"],
+        ["--what"],
+        ["--config"],
+        ["--prune=nowhere"],
+        ["torus"],
+    ],
 )
 def test_wrong_input_is_one_line(arguments, capsys):
-    assert synth.main(arguments) == 2
+    assert main.main(["synth", *arguments]) == 2
     said = capsys.readouterr()
     assert said.out == "" and said.err.count("\n") == 1
 

@@ -29,18 +29,31 @@ def test_every_file_of_the_design_has_benches():
     assert newton[0] == "newton_step" and {"fast_inverse_2", "table_32_newton"} < set(newton)
 
 
+def mutate(*arguments):
+    command = [sys.executable, "-m", "tests.campaigns.mutation", *arguments]
+    return subprocess.run(command, cwd=PACKAGE, text=True, capture_output=True)
+
+
 def test_a_sample_of_mutants_is_killed():
-    command = [sys.executable, "-m", "tests.campaigns.mutation", "--sample", str(SAMPLE)]
-    command += ["--files", *FILES]
-    done = subprocess.run(command, cwd=PACKAGE, text=True, capture_output=True)
+    done = mutate(f"--sample={SAMPLE}", *FILES)
     assert done.returncode == 0, done.stdout + done.stderr[-2000:]
     assert f"{SAMPLE} mutants, {SAMPLE} killed" in done.stdout
 
 
+def test_a_sample_of_none_is_none():
+    done = mutate("--sample=0", "rom")
+    assert done.returncode == 0 and done.stdout.startswith("0 mutants, 0 killed, 0 survived;")
+
+
 def test_what_is_not_in_the_design_is_one_line():
-    command = [sys.executable, "-m", "tests.campaigns.mutation", "--files", "nothing"]
-    done = subprocess.run(command, cwd=PACKAGE, text=True, capture_output=True)
-    assert done.returncode == 2 and done.stderr == "mutate: not in rtl/: nothing\n"
+    for arguments, says in (
+        (["span_wlaker"], "MODULE: there is no `span_wlaker`; did you mean span_walker?"),
+        (["--kind=x"], "--kind is `x`, not one of constant, operator"),
+        (["--sample=x"], "Invalid value for '--sample': "),
+    ):
+        done = mutate(*arguments)
+        assert done.returncode == 2 and done.stderr.count("\n") == 1
+        assert done.stderr.startswith(f"Error: {says}")
 
 
 def test_the_explained_mutants_exist():

@@ -23,7 +23,7 @@ from phong75.model.twin.pruning.constant_multiplier import (
     signed_digits,
 )
 from phong75.model.twin.pruning.span_guard import span_guard
-from phong75.scripts import prune, recorded
+from phong75.scripts import main, prune, recorded
 from phong75.scripts.docs import tables
 from phong75.sim.build import Bench
 from phong75.sim.elaborate import instances
@@ -295,8 +295,8 @@ def test_what_was_not_measured_is_a_dash():
     assert [k for k, cell in enumerate(cells) if cell == tables.DASH] == [6, 8]
 
 
-@pytest.mark.parametrize("wrong", ["--gates=2", "--seeds=x", "--seeds=101", "--what"])
+@pytest.mark.parametrize("wrong", ["--gates=1", "--seeds=x", "--seeds=101", "--what"])
 def test_wrong_input_is_one_line(wrong, capsys):
-    assert prune.main(["--scene=all", wrong]) == 2
+    assert main.main(["prune", "all", wrong]) == 2
     said = capsys.readouterr()
     assert said.out == "" and said.err.count("\n") == 1

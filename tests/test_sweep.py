@@ -20,7 +20,7 @@ from phong75.model.studies import charts, pareto
 from phong75.model.studies.methods import CONFIGS, of_width, points
 from phong75.model.twin.methods.quadratic_interpolator import quadratic_interpolator
 from phong75.model.verilog import header
-from phong75.scripts import recorded
+from phong75.scripts import main, recorded
 from phong75.scripts.docs import tables
 from phong75.scripts.studies import sweep
 from phong75.scripts.synthesis import clocks
@@ -187,13 +187,13 @@ def test_table_and_charts(tmp_path):
 
 
 def test_bad_command_lines(capsys):
-    assert sweep.main(["--area=yes"]) == 2
-    assert sweep.main(["--route=default,fast_inverse1"]) == 2
-    assert sweep.main(["--areal"]) == 2
+    assert main.main(["sweep", "--area=yes"]) == 2
+    assert main.main(["sweep", "--route=default,fast_inverse1"]) == 2
+    assert main.main(["sweep", "--areal"]) == 2
     said = capsys.readouterr().err.splitlines()
     assert len(said) == 3 and said[:2] == [
-        "Error: AREA is `yes`; it must be 0 or 1",
-        "Error: ROUTE: there is no configuration `fast_inverse1`; did you mean fast_inverse_1?",
+        "Error: Option '--area' does not take a value.",
+        "Error: --route: there is no `fast_inverse1`; did you mean fast_inverse_1?",
     ]
 
 
@@ -292,11 +292,11 @@ def test_what_has_no_clock_is_said(monkeypatch):
     rows = _rows()
     assert sweep.unrouted(rows) == (
         "12 of 12 configurations have no clock of today's sources, 200 MHz are stated: "
-        "make sweep ROUTE=1"
+        "phong75 sweep --route all"
     )
     for found in rows[2:]:
         found["clock_source"] = "nextpnr, grade 6, seed 1, kept"
-    assert sweep.unrouted(rows).endswith(f"ROUTE={rows[0]['name']},{rows[1]['name']}")
+    assert sweep.unrouted(rows).endswith(f"--route {rows[0]['name']},{rows[1]['name']}")
     assert sweep.unrouted(rows[2:]) == ""
     monkeypatch.setattr(tables, "SHOWN", [found["name"] for found in rows[1:3]])
     lines = tables.sweep(sweep.figures(rows)["configurations"]).split("\n")[2:]
@@ -318,8 +318,10 @@ def test_the_key_of_a_clock_is_that_of_its_own_design(tmp_path, monkeypatch):
         (rtl / file).write_text(text.replace(old, new, 1))
 
     first = key()
-    # What is not this design's: its name, a comment, a module or a field that it does not use.
+    # What is not this design's: its name, a comment, blanks, a module or a field that it does not
+    # use.
     edit("methods/unnormalized.v", "\n", "\n// another comment\n")
+    edit("methods/unnormalized.v", ");\n", ");   // a comment behind code\n")
     edit("core/inverse_sqrt_linear.v", "endmodule", "  wire more;\nendmodule")
     assert key(dataclasses.replace(config, name="other", start_index_bits=7)) == first
     # What is.

@@ -15,7 +15,7 @@ from phong75.model import twin
 from phong75.model.config import DEFAULT
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
-from phong75.scripts import waves
+from phong75.scripts import main, waves
 from phong75.sim.frame import waveform
 
 MODULE = "normalizer"
@@ -251,6 +251,6 @@ def test_the_first_pixel_is_the_first_one_taken(small, tmp_path):
 
 
 def test_an_unknown_module_is_named_with_the_known_ones(capsys):
-    assert waves.main(["phong"]) == 2
-    message = capsys.readouterr().err
-    assert message.count("\n") == 1 and "`phong`" in message and "normalizer" in message
+    assert main.main(["waves", "walker"]) == 2
+    said = capsys.readouterr().err
+    assert said == "Error: MODULE: there is no `walker`; did you mean span_walker?\n"

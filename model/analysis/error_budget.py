@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from phong75.model.arrays import ArrayLike, Reals
+from phong75.model.arrays import ArrayLike, Ints, Reals
 from phong75.model.config import DEFAULT, Config, Format
 from phong75.model.frame import Frame
 from phong75.model.quadratic_spans import MARGIN_BITS
@@ -149,7 +149,7 @@ def squares(frame: Frame, config: Config) -> float | None:
     error is at most 1 + k + k (k - 1)/2 half LSBs. The bound of a span is this error at the last
     pixel, relative to the smallest |N|**2 of the span.
     Returns None if there is no bound: |N|**2 may leave its word (it is convex along the span, so
-    its maximum is at an end), or the error may exceed the margin that keeps |N x h|**2 below
+    its maximum is at an end), or the error may exceed the margin that keeps the cross square below
     |N|**2 (`MARGIN_BITS`).
     """
     spans = frame.spans[frame.spans["length"] > 0]
@@ -210,14 +210,14 @@ def half_vector_cross(half_vector: ArrayLike, config: Config) -> tuple[float, fl
 
 
 def quadratic_versine(v: ArrayLike, config: Config, square: float) -> Reals:
-    """Error of the versine v = 2 |N x h|**2/|N|**2 (float array, 0 to 1) by `quadratic_spans`.
+    """Error of the versine v = 2 C/|N|**2 (float array, 0 to 1) by `quadratic_spans`.
 
-    square: see `squares`. The terms, for q = v/2:
+    C: the cross square (see `quadratic_spans`). square: see `squares`. The terms, for q = v/2:
 
     - the quotient of the squares: relative, the margin and the error of |N|**2; absolute, the error
-      of |N x h|**2;
+      of C;
     - the reciprocal of |N|**2: twice the error of the root, and half a unit relative to 1/4;
-    - the truncation of |N x h|**2: relative where its top bit is set, absolute where the shift is
+    - the truncation of C: relative where its top bit is set, absolute where the shift is
       limited to 15;
     - the truncation of the product; and the final rounding or, at 1, the clamp by one LSB.
     """
@@ -312,7 +312,7 @@ def power(n: float, half_vector: ArrayLike, config: Config, square: float = 0.0)
     return float(np.max(n * c ** (n - 1) * dv)) + specular_power(n, config)
 
 
-def weight(points: ArrayLike, config: Config, square: float = 0.0) -> float:
+def weight(points: Ints, config: Config, square: float = 0.0) -> float:
     """Error of W(i): the steepest line of the table times the error of Zn, and the final rounding.
 
     points: int[P], codes of W in `Config.coefficient`. square: see `squares`.
@@ -326,7 +326,7 @@ def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
     """The budget of one `material` (index) of `frame`; the last row bounds |code - 255 S| in LSB.
 
     S is eq. (3) at the pixel; for Gouraud and flat shading S is the interpolated intensity. For
-    `quadratic_spans` valid only if `squares` has a bound.
+    `quadratic_spans` ValueError is raised if `squares` has no bound.
     """
     white = (1 << config.colour_bits) - 1
     if config.technique != "phong":
@@ -340,7 +340,8 @@ def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
     square = 0.0
     if config.normal_method == "quadratic_spans":
         bound = squares(frame, config)
-        assert bound is not None, "the squares have no bound"
+        if bound is None:
+            raise ValueError("the interpolated squares have no bound")
         square = bound
         parts = [
             Row("squares", square, "interpolated, against |N|^2"),

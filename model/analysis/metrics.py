@@ -7,6 +7,7 @@ Errors are in LSB of an 8-bit colour code.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -41,7 +42,7 @@ class Comparison:
 
 
 def compare(expected: Pixels, got: Pixels) -> Comparison:
-    """Compare two streams of pixels pixel by pixel, bit for bit.
+    """Compare two streams of pixels (`model.twin.Pixels`) pixel by pixel, bit for bit.
 
     Position, colour and the last flag must be equal. A pixel that only one stream has is a
     mismatch.
@@ -73,7 +74,7 @@ def rounded(exact: ArrayLike) -> Ints:
     return np.floor(np.asarray(exact, np.float64) + 0.5).astype(np.int64)
 
 
-def error_metrics(codes: ArrayLike, exact: ArrayLike) -> dict:
+def error_metrics(codes: ArrayLike, exact: ArrayLike) -> dict[str, Any]:
     """Error of `codes` (integers[n, 3]) against `exact` = 255 clamp(S, 0, 1) (float64[n, 3]).
 
     `exact` is not rounded, so that perfect codes have errors of up to 1/2 LSB. Pass only shaded

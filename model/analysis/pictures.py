@@ -65,7 +65,7 @@ def picture(frame: Frame, pixels: Pixels) -> Image.Image:
     return Image.fromarray(canvas(frame, pixels.x, pixels.y, pixels.rgb))
 
 
-def write_picture(path: str | Path, picture: np.ndarray) -> None:
+def write_picture(path: str | Path, picture: NDArray[np.uint8]) -> None:
     """Write `picture` (uint8[height, width, 3]) as PNG. Raises OSError."""
     Image.fromarray(picture).save(path, format="PNG")
 

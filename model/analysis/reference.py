@@ -82,7 +82,7 @@ def zero_normals(frame: Frame) -> int:
     return int((normal == 0).all(axis=1).sum())
 
 
-def render(frame: Frame, config: Config = DEFAULT) -> Reals:
+def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:
     """255 clamp(S, 0, 1) from the integers at the ports and in the tables, float64[n, 3].
 
     Rows are in the order of the stream. The comparison with the pipeline's codes shows the error of
@@ -101,7 +101,7 @@ def render(frame: Frame, config: Config = DEFAULT) -> Reals:
     )  # fmt: skip
 
 
-def render_exact(frame: Frame, exact: ExactFrame, config: Config = DEFAULT) -> Reals:
+def render_exact(frame: Frame, exact: ExactFrame, config: Config = DEFAULT) -> np.ndarray:
     """255 clamp(S, 0, 1) from the scene's values before any rounding, float64[n, 3].
 
     exact: the values that were rounded to `frame`. The comparison with the pipeline's codes also

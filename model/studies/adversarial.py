@@ -19,12 +19,12 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import cast
+from typing import Any
 
 import numpy as np
 
 from phong75.model.analysis import error_budget, reference
-from phong75.model.arrays import Flags, Ints, Reals, Trace
+from phong75.model.arrays import Ints, Reals, Trace
 from phong75.model.config import DEFAULT as C
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
 from phong75.model.twin.core.phong_unit import shade
@@ -74,7 +74,7 @@ class Family:
                 h = half_vector_codes(np.array([np.sin(angle), 0, np.cos(angle)]), C)
                 frame = Frame(1, 1, h, False, (0, 0, 0), table, np.zeros(1, SPAN_DTYPE))
                 bound = error_budget.bound_lsb(frame)
-                assert bound is not None  # derived for all methods of the default configuration
+                assert bound is not None  # only `quadratic_spans` may have none
                 worst = max(worst, bound)
         return worst
 
@@ -92,19 +92,19 @@ class Inputs:
     the Zn of the normal, `Config.coefficient`.
     """
 
-    normal: Ints
-    half_vector: Ints
-    exponent: Ints
-    ambient: Ints
-    diffuse: Ints
-    weight: Ints
+    normal: np.ndarray
+    half_vector: np.ndarray
+    exponent: np.ndarray
+    ambient: np.ndarray
+    diffuse: np.ndarray
+    weight: np.ndarray
 
-    def take(self, which: Ints | Flags | slice | list[int]) -> Inputs:
+    def take(self, which: Ints | slice | list[int]) -> Inputs:
         """The points selected by `which` (a mask or indices)."""
         return Inputs(*(getattr(self, f)[..., which] for f in self.__dataclass_fields__))
 
 
-def _points(inputs: Inputs) -> Ints:
+def _points(inputs: Inputs) -> np.ndarray:
     """W at all table points, int64[n, P]: constant on each side of the normal's interval."""
     z = inputs.normal[2] / np.maximum(np.linalg.norm(inputs.normal.astype(float), axis=0), 1)
     interval = np.clip((z * (C.weight_points - 1)).astype(np.int64), 0, C.weight_points - 2)
@@ -125,9 +125,8 @@ def evaluate(inputs: Inputs) -> tuple[Ints, Reals, Reals]:
         channel + inputs.ambient[:, None], channel + inputs.diffuse[:, None], points,
         inputs.exponent,
     )  # fmt: skip
-    # Each point has a material and a half vector of its own. The twin broadcasts over both, so that
-    # arrays may stand for the two integers of `Frame.half_vector`.
-    half_vector = cast(tuple[int, int], inputs.half_vector)
+    # Each point has a material and a half vector of its own. The twin broadcasts over both.
+    half_vector: Any = inputs.half_vector
     frame = Frame(1, 1, half_vector, False, (0, 0, 0), table, np.zeros(0, SPAN_DTYPE))
     trace: Trace = {}
     codes = shade(inputs.normal, material, frame, C, trace)[0]
@@ -141,7 +140,7 @@ def evaluate(inputs: Inputs) -> tuple[Ints, Reals, Reals]:
     return codes, unrounded, exact
 
 
-def _objective(inputs: Inputs) -> Reals:
+def _objective(inputs: Inputs) -> np.ndarray:
     """The error of 255 S in LSB, float64[n]; 0 for points that step 3 could saturate at S = 1."""
     _, unrounded, exact = evaluate(inputs)
     return np.where(exact < 252, np.abs(unrounded - exact), 0)
@@ -249,11 +248,7 @@ def _explore(family: Family, examples: int) -> list[dict]:
         st.integers(0, ONE - AMBIENT), st.tuples(coefficient, coefficient),
     )  # fmt: skip
     def drive(
-        normal: tuple[int, int, int],
-        angle: float,
-        exponent: int,
-        diffuse: int,
-        weight: tuple[int, int],
+        normal: tuple[int, ...], angle: float, exponent: int, diffuse: int, weight: tuple[int, ...]
     ) -> None:
         point = {
             "normal": normal, "angle": angle, "exponent": exponent, "diffuse": diffuse,
@@ -267,7 +262,7 @@ def _explore(family: Family, examples: int) -> list[dict]:
     return [point for _, point in sorted(scored, key=lambda pair: pair[0])[-200:]]
 
 
-def _gathered(points: list[dict]) -> tuple[Inputs, Reals]:
+def _gathered(points: list[dict]) -> tuple[Inputs, np.ndarray]:
     """The `points` of `_explore` as arrays, and their eye angles (radians)."""
     angle = np.array([p["angle"] for p in points])
 

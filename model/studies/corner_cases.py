@@ -34,12 +34,6 @@ EXPONENTS = (1, 1.5, 2, 10, 64, 127, 128)
 #: Default angle from light to eye, radians.
 ANGLE = np.radians(40)
 
-#: A check of the RTL's pixels of a frame, which returns one message per failure.
-Check = Callable[[Frame, Pixels], list[str]]
-
-#: Cp, d, W and n of a material.
-Coefficients = tuple[ArrayLike, float, ArrayLike, float]
-
 #: Number of pixels that `errors` processes at a time; this bounds the memory.
 BLOCK = 1 << 17
 
@@ -62,15 +56,15 @@ class Case:
     extreme: str
     expected: str
     frame: Frame
-    check: Check = _no_check
+    check: Callable[[Frame, Pixels], list[str]] = _no_check
     full_rate: bool = False
 
 
 # -- directed frames -------------------------------------------------------------------------------
 
 
-def _materials(*rows: Coefficients) -> MaterialTable:
-    """The material table of `rows`."""
+def _materials(*rows: tuple[ArrayLike, float, ArrayLike, float]) -> MaterialTable:
+    """The material table of `rows` (Cp, d, W, n)."""
     table = MaterialTable.empty(C)
     for index, (cp, d, weight, n) in enumerate(rows):
         table.set(index, cp, d, np.broadcast_to(weight, C.weight_points), n, C)
@@ -132,7 +126,7 @@ def _directions(rng: np.random.Generator, count: int) -> Reals:
     return normalize(rng.normal(size=(count, 3)))
 
 
-def _normals(frame: Frame) -> Ints:
+def _normals(frame: Frame) -> np.ndarray:
     """The interpolated normal of every pixel of a legal frame, codes int64[n, 3]."""
     spans = frame.spans
     span = np.repeat(np.arange(len(spans)), spans["length"])
@@ -141,7 +135,7 @@ def _normals(frame: Frame) -> Ints:
     return spans["start"][span] + k[:, None] * spans["step"][span]
 
 
-def _material(frame: Frame) -> Ints:
+def _material(frame: Frame) -> np.ndarray:
     """The material index of every pixel of a legal frame, int[n]."""
     return np.repeat(frame.spans["material"], frame.spans["length"])
 
@@ -277,12 +271,12 @@ def _spans() -> Iterator[Case]:
         _frame(np.tile(np.concatenate([up, long, down]), 4), two_sided=True),
         dark_stays_ambient,
     )
-    normals = _directions(rng, 4096)
+    single = _directions(rng, 4096)
     yield Case(
         "4096 spans back to back",
         "spans of one pixel, each of another material, without an idle cycle between",
         "one pixel per cycle",
-        _frame(_between(normals, normals, 1, np.arange(4096) % 14)),
+        _frame(_between(single, single, 1, np.arange(4096) % 14)),
         full_rate=True,
     )
 
@@ -456,7 +450,7 @@ def _once(frame: Frame, got: Pixels) -> list[str]:
     return [f"{doubles} pixels drawn twice"] if doubles else []
 
 
-def _fills(x0: float, y0: float, x1: float, y1: float) -> Check:
+def _fills(x0: float, y0: float, x1: float, y1: float) -> Callable[[Frame, Pixels], list[str]]:
     """A check that the pixels with their centre in the rectangle are drawn once, and no other."""
 
     def check(frame: Frame, got: Pixels) -> list[str]:
@@ -656,10 +650,10 @@ def shared_edges(
         count = min(5000, meshes - counts["meshes"])
         x, y, low, high = random_meshes(count, rng)
         y = y + np.arange(count)[:, None, None] * MESH_PIXELS * GRID
-        column, line = x.reshape(-1, 3) / GRID, y.reshape(-1, 3) / GRID
-        normal, material = np.zeros((len(column), 3, 3)), np.zeros(len(column), np.int64)
+        px, py = x.reshape(-1, 3) / GRID, y.reshape(-1, 3) / GRID
+        normal = np.zeros((len(px), 3, 3))
         triangles = visibility.set_up(
-            column, line, np.zeros(column.shape), normal, material, two_sided=True
+            px, py, np.zeros(px.shape), normal, np.zeros(len(px), np.int64), two_sided=True
         )
         lines = count * MESH_PIXELS
         first, end = visibility.line_range(triangles, MESH_PIXELS, lines)

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from phong75.model.config import DEFAULT as C
@@ -13,11 +11,7 @@ from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable
 
 
 def random_frame(
-    seed: int | Sequence[int],
-    spans: int,
-    longest: int,
-    two_sided: bool = False,
-    config: Config = C,
+    seed: int | list[int], spans: int, longest: int, two_sided: bool = False, config: Config = C
 ) -> Frame:
     """A frame of `spans` legal spans of 1 to `longest` pixels each, of random materials.
 

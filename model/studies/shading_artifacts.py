@@ -20,7 +20,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from phong75.model.analysis import reference
-from phong75.model.arrays import ArrayLike, Flags, Ints, Reals
+from phong75.model.arrays import ArrayLike, Ints, Reals
 from phong75.model.config import TECHNIQUES
 from phong75.model.frame import ExactFrame, Frame
 from phong75.model.front.camera import Camera
@@ -52,7 +52,7 @@ def _along(frame: Frame, exact: ExactFrame, span: Ints, k: ArrayLike, technique:
     )  # fmt: skip
 
 
-def mach_bands(front: FrontEnd, technique: str, counted: Flags) -> dict[str, float]:
+def mach_bands(front: FrontEnd, technique: str, counted: np.ndarray) -> dict:
     """Jumps of slope (LSB per pixel) and intensity (LSB) across edges, along the scan lines.
 
     counted: bool[width * height], which pixels count as the pixel to the left of an edge. An edge
@@ -119,10 +119,10 @@ def turning(
         yield front_end(scene, TECHNIQUES[technique]).frame
 
 
-def flicker(frames: list[Frame], pixels: list[Pixels]) -> dict:
+def flicker(frames: list[Frame], pixels: list) -> dict:
     """Change from frame to frame, in LSB of a colour code, on the pixels that all frames cover.
 
-    pixels: of each of `frames`. The rotating surface is symmetric, so that perfect
+    pixels: the `Pixels` of each of `frames`. The rotating surface is symmetric, so that perfect
     shading gives 0. Returns a dict:
 
     - pixels: number of pixels that all frames cover.
@@ -246,7 +246,7 @@ def square_scene(degrees: float, size: int = 200) -> Scene:
 def quarter_turn_difference(upright: Pixels, turned: Pixels, size: int = 200) -> int:
     """Largest difference, LSB, of the square's codes at 0 degrees and at 90 degrees.
 
-    upright, turned: pixels of the two pictures. The second is rotated back. Only pixels that both
+    upright, turned: `Pixels` of the two pictures. The second is rotated back. Only pixels that both
     pictures cover count.
     """
     pictures = np.full((2, size, size, 3), -1)
@@ -257,7 +257,7 @@ def quarter_turn_difference(upright: Pixels, turned: Pixels, size: int = 200) ->
     return int(np.abs(pictures[0] - rotated_back)[both].max())
 
 
-def polygon_picture(degrees: float, size: int = 200) -> Reals:
+def polygon_picture(degrees: float, size: int = 200) -> np.ndarray:
     """The square as one polygon, in the view of `square_scene`, scan line by scan line.
 
     Returns 255 S, float64[size, size], y downward; NaN outside the square.

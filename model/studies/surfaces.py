@@ -24,7 +24,7 @@ class Surface(Protocol):
 
     @property
     def name(self) -> str:
-        """The key of the surface in `SURFACES`."""
+        """The key of the surface in SURFACES."""
 
     @property
     def levels(self) -> tuple[int, ...]:
@@ -84,7 +84,7 @@ class Torus:
         """See `Surface`."""
         return shapes.torus(1.0, self.tube, level, level // 2)
 
-    def normal(self, points: Reals) -> Reals:
+    def normal(self, points: np.ndarray) -> np.ndarray:
         """Unit normals at `points` (float64[..., 3]) on or near the torus."""
         ring = points[..., :2] / np.linalg.norm(points[..., :2], axis=-1, keepdims=True)
         return normalize(points - np.concatenate([ring, np.zeros_like(ring[..., :1])], axis=-1))
@@ -138,7 +138,7 @@ class Patch:
     number: int = 4
 
     @cached_property
-    def control(self) -> Reals:
+    def control(self) -> np.ndarray:
         """The control points, float64[4, 4, 3], indices u, v."""
         return shapes.teapot_patch(self.number)
 
@@ -154,11 +154,6 @@ class Patch:
             @ self.control.reshape(16, 3)
             for i, j in ((0, 0), (1, 0), (0, 1))
         ]
-
-    def _normal(self, u: Reals, v: Reals) -> Reals:
-        """Unit normals at the parameters `u`, `v` (float64[n]), float64[n, 3]."""
-        _, du, dv = self.at(u, v)
-        return normalize(np.cross(dv, du))
 
     def see(self, origin: Reals, back: Reals) -> tuple[Flags, Reals]:
         """See `Surface`: Newton's method from the nearest point of a grid on the patch.
@@ -208,7 +203,12 @@ class Patch:
         _, du, dv = self.at(u, v)
         basis = np.stack([du, dv], axis=-1)
         step = np.einsum("nij,nj->ni", np.linalg.pinv(basis), tangent.reshape(-1, 3)) * 1e-5
-        ahead, behind = (self._normal(u + s * step[:, 0], v + s * step[:, 1]) for s in (1, -1))
+
+        def normal(u: Reals, v: Reals) -> Reals:
+            _, du, dv = self.at(u, v)
+            return normalize(np.cross(dv, du))
+
+        ahead, behind = (normal(u + s * step[:, 0], v + s * step[:, 1]) for s in (1, -1))
         return ((ahead - behind) / 2e-5).reshape(tangent.shape)
 
 

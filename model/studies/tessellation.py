@@ -11,11 +11,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
 from phong75.model.analysis import reference
-from phong75.model.arrays import Flags, Ints, Reals
+from phong75.model.arrays import Reals
 from phong75.model.config import DEFAULT, TECHNIQUES
 from phong75.model.frame import Frame
 from phong75.model.front import scene_to_spans, visibility
@@ -50,14 +51,23 @@ def scene_of(
     """
     back, height = VIEWS[surface.name]
     axes = view_axes(back, (0.0, 0.0, 1.0))
-    assert axes is not None  # no view is along the z axis
+    assert axes is not None  # no view is along z
     middle = surface.mesh(4).vertices
     target = (middle.min(axis=0) + middle.max(axis=0)) / 2
     camera = Camera("orthographic", axes, target, target + 10 * axes[2], height)
     light = normalize(np.asarray(LIGHT) @ axes)
     objects = [SceneObject(surface.name, mesh, 0)]
     return Scene(
-        surface.name, *size, (0.0, 0.0, 0.0), camera, light, False, "linear", objects, [material]
+        surface.name,
+        size[0],
+        size[1],
+        (0.0, 0.0, 0.0),
+        camera,
+        light,
+        False,
+        "linear",
+        objects,
+        [material],
     )
 
 
@@ -88,10 +98,10 @@ class Truth:
     """
 
     width: int
-    covered: Flags
-    value: Reals
-    facing: Reals
-    highlight: Flags
+    covered: np.ndarray
+    value: np.ndarray
+    facing: np.ndarray
+    highlight: np.ndarray
 
 
 @lru_cache(maxsize=8)
@@ -119,8 +129,8 @@ class Picture:
     pixel: int64[n], covered pixels as y * width + x. value: float64[n, 3], 255 S there.
     """
 
-    pixel: Ints
-    value: Reals
+    pixel: np.ndarray
+    value: np.ndarray
 
 
 def shaded(
@@ -216,7 +226,7 @@ def errors(
     size: tuple[int, int] = SIZE,
     material: Material = MATERIAL,
     where: str = "all",
-) -> dict[str, float]:
+) -> dict[str, Any]:
     """Error of `picture` against the true surface `name`, in LSB, on the pixels that both cover.
 
     where: which pixels count: "all"; "facing", normals within 60 degrees of the eye; "highlight",
@@ -256,5 +266,5 @@ def order(levels: Sequence[float], values: Sequence[float], last: int = 4) -> fl
 
 
 def as_picture(frame: Frame, pixels: Pixels) -> Picture:
-    """The Picture of the pipeline's output `pixels`."""
+    """The Picture of the pipeline's output `pixels` (`Pixels`)."""
     return Picture(pixels.y * frame.width + pixels.x, pixels.rgb.astype(np.float64))

@@ -7,10 +7,10 @@ from __future__ import annotations
 import re
 
 import typer
-from phong75.scripts.main import app
 from typer.core import TyperArgument, TyperCommand, TyperGroup
 
 from phong75.scripts.docs.tables import markdown
+from phong75.scripts.main import app
 from phong75.sim.design import PACKAGE
 
 

@@ -126,6 +126,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "diagram": facts.diagram,
     "latencies": facts.latency_table,
     "formats": facts.formats,
+    "ports": facts.port_table,
     "span-word": facts.span_table,
     "pixel-word": facts.pixel_table,
     "registers": facts.register_table,

@@ -27,6 +27,7 @@ from phong75.model.front.scene import SHAPES
 from phong75.model.studies import corner_cases
 from phong75.model.studies.methods import points
 from phong75.scripts.docs.tables import markdown
+from phong75.scripts.export import documents
 from phong75.sim.elaborate import instances
 from phong75.sim.formal.proofs import PROOFS
 from phong75.sim.latency import latencies
@@ -105,6 +106,15 @@ def formats() -> str:
         if isinstance(value := getattr(C, field.name), Format)
     ]
     return markdown(("field of `Config`", "format", "what"), rows, left=3)
+
+
+def port_table(config: Config = C) -> str:
+    """The ports of `phong_pipeline`, in the order of its declaration."""
+    rows = (
+        (f"`{port.name}`", port.direction, str(port.bits), port.meaning)
+        for port in documents.ports(config)
+    )
+    return markdown(("port", "direction", "bits", "meaning"), rows, left=4)
 
 
 def span_table(config: Config = C) -> str:

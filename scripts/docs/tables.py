@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from phong75.model.studies.charts import pareto
+from phong75.model.studies import pareto
 from phong75.scripts import recorded
 
 DASH = "–"
@@ -299,10 +299,9 @@ def front(configurations: dict[str, dict[str, Any]]) -> list[tuple[str, dict[str
     Errors count to a thousandth of an LSB: a smaller difference cannot be seen.
     """
     items = list(configurations.items())
-    errors = [round(of["rms_lsb"], 3) for _, of in items]
-    kept = pareto([of["frame_us"] for _, of in items], errors)
+    points = [(of["frame_us"], round(of["rms_lsb"], 3)) for _, of in items]
     return sorted(
-        (item for item, on in zip(items, kept, strict=True) if on),
+        (item for item, on in zip(items, pareto.on_front(points), strict=True) if on),
         key=lambda item: item[1]["frame_us"],
     )
 

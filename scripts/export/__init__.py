@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Exports one configuration as a folder that needs nothing of Phong75: `export`.
+"""Exports one configuration as a folder that needs nothing of Phong75: `phong75 export`.
 
 The folder holds the sources without macros and with a prefix on every module name, file lists, a
 port table, a stimulus with its expected pixels, and a testbench in plain Verilog. So two exports
@@ -8,29 +8,26 @@ can stand in one design.
 
 from __future__ import annotations
 
-import argparse
 import dataclasses
 import importlib.metadata
 import json
 import os
 import re
 import shutil
-import sys
 from pathlib import Path
 
 import phong75
 from phong75.model.analysis import pruning
-from phong75.model.config import DEFAULT, TECHNIQUES, Config
+from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import Frame, InputError
 from phong75.model.front.scene import load_scene
-from phong75.model.front.scene_to_spans import front_end
 from phong75.model.registers import writes
-from phong75.model.spans import squares_only
-from phong75.model.studies.methods import CONFIGS
+from phong75.model.scene_to_frame import front_end
 from phong75.model.verilog import header
+from phong75.scripts import console
 from phong75.scripts.export import documents, stimulus, verilog
 from phong75.sim import design
-from phong75.sim.build import BuildError
+from phong75.sim.elaborate import instances
 
 #: What the stimulus shows unless a scene is named, and its size unless one is given.
 SCENE, SIZE = "still_life", (48, 32)
@@ -48,11 +45,6 @@ STIMULUS = stimulus.TESTBENCH.parent
 REFRESH = "phong75 export --header"
 
 _PREFIX = re.compile(r"([A-Za-z_]\w*)?", re.ASCII)
-
-
-def configurations() -> dict[str, Config]:
-    """Every configuration that has a name: techniques and those of the precision sweep."""
-    return {**TECHNIQUES, **CONFIGS}
 
 
 def export(
@@ -118,7 +110,7 @@ def _frame(scene: str | None, size: tuple[int, int] | None, config: Config) -> F
 
 def _check(frame: Frame, config: Config, scene: str) -> None:
     """Raise InputError if `frame` needs what `config` leaves out."""
-    if squares_only(config):
+    if config.spans_carry_squares:
         return
     full = dataclasses.replace(
         config, **{name: getattr(DEFAULT, name) for name in pruning.FEATURES}
@@ -137,7 +129,7 @@ def _check(frame: Frame, config: Config, scene: str) -> None:
 
 def _files(config: Config, prefix: str, frame: Frame, shown: str, pruned: bool) -> dict[str, str]:
     """{path in the export: text} of everything but the manifest. Raises BuildError."""
-    values = verilog.macros(config)
+    values, present = verilog.macros(config), instances(config)
     version = phong75.__version__
     modules = {file.stem for file in design.sources()}
     modules |= {file.stem for file in design.sources(technology=design.ECP5)}
@@ -156,9 +148,9 @@ def _files(config: Config, prefix: str, frame: Frame, shown: str, pruned: bool) 
         return paths
 
     about = f"// Phong75 {version}, configuration {config.name}"
-    listed = put(verilog.used(config))
+    listed = put(verilog.used(present))
     files["rtl.f"] = _listed(f"{about}: the design", listed)
-    chip = put(verilog.used(config, design.ECP5))
+    chip = put(verilog.used(present, design.ECP5))
     ecp5 = chip != listed
     if ecp5:
         files["rtl_ecp5.f"] = _listed(f"{about}: the design for a Lattice ECP5", chip)
@@ -267,42 +259,20 @@ def refresh() -> list[Path]:
 # -- command line ----------------------------------------------------------------------------------
 
 
-def main(argv: list[str] | None = None) -> int:
-    """Export with the command line `argv`; returns the exit code.
+def renew() -> int:
+    """Renew what the checkout keeps and print its paths; returns the exit code."""
+    for path in refresh():
+        console.say(console.shown(path))
+    return console.GOOD
 
-    0; 1 if a tool failed; 2 if the input is wrong, with one line on stderr that says what.
-    """
-    parser = argparse.ArgumentParser(prog="export", description=__doc__.partition("\n")[0])
-    parser.add_argument("--config", default="default", help="name of a configuration")
-    parser.add_argument("--out", type=Path, help="folder of the export")
-    parser.add_argument("--prefix", help="of every module name; default: the configuration's name")
-    parser.add_argument("--scene", help=f"what the stimulus shows; default: {SCENE}")
-    parser.add_argument("--size", help="of the picture, such as 48x32")
-    parser.add_argument("--prune", action="store_true", help="leave out what the scene lacks")
-    parser.add_argument("--header", action="store_true", help="renew what the checkout keeps")
-    given = parser.parse_args(argv)
-    try:
-        if given.header:
-            for path in refresh():
-                print(path)
-            return 0
-        config = configurations().get(given.config)
-        if config is None:
-            raise InputError(f"there is no configuration `{given.config}`")
-        if given.out is None:
-            raise InputError("--out is missing: the folder to write")
-        size = re.fullmatch(r"([0-9]{1,4})x([0-9]{1,4})", given.size or f"{SIZE[0]}x{SIZE[1]}")
-        if not size:
-            raise InputError(f"the size is `{given.size}`, not such as 48x32")
-        names = export(
-            config, given.out, given.prefix, given.scene,
-            (int(size[1]), int(size[2])) if given.size else None, given.prune,
-        )  # fmt: skip
-    except InputError as error:
-        print(f"Error: {error}", file=sys.stderr)
-        return 2
-    except BuildError as error:
-        print(f"Error: {error}", file=sys.stderr)
-        return 1
-    print(f"{given.out}: {len(names)} files; README.md says how to simulate and integrate them")
-    return 0
+
+def main(
+    config: Config, out: Path | None, prefix: str | None, scene: str | None,
+    size: tuple[int, int] | None, prune: bool,
+) -> int:  # fmt: skip
+    """Export, and say where; returns the exit code. Arguments and errors as for `export`."""
+    if out is None:
+        raise InputError("--out is missing: the folder to write")
+    names = export(config, out, prefix, scene, size, prune)
+    console.say(f"{out}: {len(names)} files; README.md says how to simulate and integrate them")
+    return console.GOOD

@@ -306,8 +306,8 @@ def readme(
         f"obj_dir/V{bench}\n```",
         f"The testbench prints `PASS {3 * numbers['PIXELS']} pixels`: the frame runs three times, "
         "first without pauses, then with random ones. Or it prints `FAIL` with the first "
-        "difference, and the exit code is not 0. No pixel may differ in any bit: the expected ones are those "
-        "of Phong75's bit-accurate model.",
+        "difference, and the exit code is not 0. No pixel may differ in any bit: the expected "
+        "pixels are those of Phong75's bit-accurate model.",
         "## Integrate\n\nGive your tools the files of `rtl.f` (or `rtl_ecp5.f`). All module names "
         f"begin with `{prefix}`, so exports with different prefixes stand side by side in one "
         "design. No file needs another folder in the include path."

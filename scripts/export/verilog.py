@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import dataclasses
 import re
+from collections.abc import Container
 from pathlib import Path
 
 from phong75.model.config import DEFAULT, Config, Format
 from phong75.model.tables import tables
 from phong75.model.verilog import header
 from phong75.sim import design
-from phong75.sim.elaborate import instances
 from phong75.sim.latency import latencies
 
 SPDX = "// SPDX-License-Identifier: MIT"
@@ -180,23 +180,22 @@ def rename(text: str, modules: set[str], prefix: str) -> str:
     return re.sub(rf"^// ({names}):", rf"// {prefix}\1:", text, count=1, flags=re.MULTILINE)
 
 
-def used(config: Config, technology: Path | None = None) -> list[Path]:
-    """The files of the modules that `config` elaborates, in the order of the file list.
+def used(present: Container[str], technology: Path | None = None) -> list[Path]:
+    """The files of the modules `present`, in the order of the file list.
 
     technology: as for `design.sources`; what its modules are made of is among the files.
     """
-    present = set(instances(config))
-    files = [file for file in design.sources(technology=technology) if file.stem in present]
-    if technology:
-        text = "".join(file.read_text() for file in files if file.parent == technology)
-        files += [
-            file
-            for file in design.sources(technology=technology)
-            if file.parent == technology
-            and file not in files
-            and re.search(rf"^\s*{file.stem}\s+(#|\w)", text, re.MULTILINE)
-        ]
-    return files
+    sources = design.sources(technology=technology)
+    files = [file for file in sources if file.stem in present]
+    text = "".join(file.read_text() for file in files if file.parent == technology)
+    parts = [
+        file
+        for file in sources
+        if file.parent == technology
+        and file not in files
+        and re.search(rf"^\s*{file.stem}\s+(#|\w)", text, re.MULTILINE)
+    ]
+    return files + parts
 
 
 def export_module(

@@ -1,4 +1,5 @@
-"""One page of all results, build/report/index.html: `make report`.
+# SPDX-License-Identifier: MIT
+"""One page of all results, build/report/index.html: `phong75 report`.
 
 The page shows pictures, cycles, error over run time, stability, the error budget and the records of
 the long runs, from the JSON and CSV files of the other targets. Scenes without a current result are
@@ -14,17 +15,16 @@ import csv
 import gzip
 import itertools
 import json
-import os
+import re
 import subprocess
-import sys
-from contextlib import redirect_stdout
 from dataclasses import dataclass, field
-from io import BytesIO, StringIO
+from io import BytesIO
 from pathlib import Path
 
 import jinja2
 import numpy as np
 import plotly.graph_objects as go
+from markupsafe import Markup, escape
 from PIL import Image
 from plotly.offline import get_plotlyjs
 
@@ -38,13 +38,15 @@ from phong75.model.front.scene import bundled_scenes, load_scene
 from phong75.model.spans import read_spans
 from phong75.model.studies import methods, pareto, tessellation
 from phong75.model.studies.charts import TECHNIQUE_NAMES
-from phong75.scripts import recorded
+from phong75.scripts import console, recorded
 from phong75.scripts import run as run_scene
+from phong75.scripts.console import Steps
 from phong75.scripts.docs.tables import HardwareRow, hardware_rows
 from phong75.scripts.scene_results import SCHEMA as RESULTS
 from phong75.scripts.stability import SCHEMA as STABILITY
 from phong75.scripts.studies import artifact_runs
 from phong75.sim.design import BUILD, PACKAGE
+from phong75.sim.frame import run_frame
 
 #: The page weighs less than this.
 LIMIT_BYTES = 5_000_000
@@ -195,7 +197,7 @@ def run_missing(names: list[str], build: Path) -> None:
     """Run each of the scenes `names`, by every technique, that has no result in `build`, or one
     older than the sources.
 
-    Raises InputError if one cannot be run; one that fails its checks says so on the page.
+    Raises as `scripts.run.run` if one cannot be run; one that fails its checks says so on the page.
     """
     changed = newest_source()
     todo = []
@@ -204,12 +206,9 @@ def run_missing(names: list[str], build: Path) -> None:
         if not path.is_file() or path.stat().st_mtime < changed:
             todo.append((name, technique, path.parent))
     for k, (name, technique, out) in enumerate(todo):
-        what = f"make run SCENE={name} TECHNIQUE={technique}"
-        print(f"{what} ({k + 1} of {len(todo)})", file=sys.stderr, flush=True)
-        with redirect_stdout(StringIO()):
-            code = run_scene.main([f"--scene={name}", f"--technique={technique}", f"--out={out}"])
-        if code == 2:
-            raise InputError(f"{what} failed")
+        console.note(f"{name}, {technique} ({k + 1} of {len(todo)})")
+        request = run_scene.request(name, config=TECHNIQUES[technique], out=out)
+        run_scene.run(request, run_frame.simulate, Steps())
 
 
 def scene_result(name: str, build: Path) -> SceneResult | None:
@@ -565,6 +564,11 @@ def precision_frames() -> list[str]:
     return texts
 
 
+def code(text: str) -> Markup:
+    """`text` for the page, with what stands between backticks as code."""
+    return Markup(re.sub("`([^`]*)`", r"<code>\1</code>", str(escape(text))))
+
+
 def page(build: Path = BUILD) -> str:
     """The page from what is below `build`. Raises InputError or OSError if a file is broken."""
     scenes = [s for name in bundled_scenes() if (s := scene_result(name, build))]
@@ -588,6 +592,7 @@ def page(build: Path = BUILD) -> str:
         loader=jinja2.FileSystemLoader(Path(__file__).parent), autoescape=True,
         undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
+    environment.filters["code"] = code
     return environment.get_template("report.html.j2").render(
         scenes=scenes, results=results, stability=stability, precision=precision,
         clock_note=clock_note(precision) if precision else "",
@@ -605,21 +610,14 @@ def page(build: Path = BUILD) -> str:
 
 
 def main(build: Path = BUILD) -> int:
-    """Make the page; returns the exit code."""
-    try:
-        run_missing(bundled_scenes(), build)
-        text = page(build)
-        path = build / "report" / "index.html"
-        path.parent.mkdir(parents=True, exist_ok=True)
-        part = path.with_suffix(".part")
-        part.write_text(text, encoding="utf-8")
-        part.replace(path)
-    except (InputError, OSError) as error:
-        print(f"Error: {error}", file=sys.stderr)
-        return 2
-    print(f"{os.path.relpath(path)}: {path.stat().st_size / 1e6:.1f} MB, opens in any browser")
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    """Make the page; returns the exit code. Raises InputError, OSError, and as `run_missing`."""
+    run_missing(bundled_scenes(), build)
+    text = page(build)
+    path = build / "report" / "index.html"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_suffix(".part")
+    part.write_text(text, encoding="utf-8")
+    part.replace(path)
+    size = path.stat().st_size / 1e6
+    console.say(f"{console.shown(path)}: {size:.1f} MB, opens in any browser")
+    return console.GOOD

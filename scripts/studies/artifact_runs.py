@@ -1,6 +1,7 @@
+# SPDX-License-Identifier: MIT
 """The paper's arguments as numbers and pictures: Mach bands, flicker, orientation.
 
-Part of `make tessellation`. Writes build/sweep/arguments.json, mach.png, flicker.png and
+Part of `phong75 tessellation`. Writes build/sweep/arguments.json, mach.png, flicker.png and
 orientation.png (and .svg). Codes of turning objects and of the square come from the RTL.
 """
 
@@ -19,8 +20,9 @@ from phong75.model.config import TECHNIQUES
 from phong75.model.scene_to_frame import front_end
 from phong75.model.studies import charts, shading_artifacts, tessellation
 from phong75.model.studies.surfaces import SURFACES
+from phong75.scripts.console import MismatchError
 from phong75.sim.design import BUILD
-from phong75.sim.frame.run_frame import Job, SimulationError, simulate_jobs
+from phong75.sim.frame.run_frame import Job, simulate_jobs
 
 FOLDER = BUILD / "sweep"
 #: Meshes on which the techniques can be told apart: steps once round.
@@ -32,17 +34,17 @@ SQUARE_SIZE = 200
 
 
 def shaded_by_rtl(frames: list, technique: str) -> list:
-    """`Pixels` of each of `frames`. Raises SimulationError if RTL and model differ."""
+    """`Pixels` of each of `frames`. Raises MismatchError, BuildError, SimulationError."""
     config = TECHNIQUES[technique]
     results = simulate_jobs([Job(frame) for frame in frames], config)
     for frame, result in zip(frames, results, strict=True):
         if metrics.compare(twin.render(frame, config), result.pixels).mismatches:
-            raise SimulationError(f"{technique}: RTL and model differ")
+            raise MismatchError(f"{technique}: RTL and model differ")
     return [result.pixels for result in results]
 
 
 def mach(levels=LEVELS, size=tessellation.SIZE) -> dict:
-    """{shape: {level: {technique: jumps}}}, on dots whose normal is within 60 degrees of the
+    """{shape: {level: {technique: jumps}}}, on pixels whose normal is within 60 degrees of the
     eye."""
     out: dict = {}
     for shape, steps in levels.items():
@@ -99,7 +101,7 @@ def orientation(size: int = SQUARE_SIZE) -> tuple[dict, dict]:
 def run(progress: Callable[[str], None] = lambda text: None, folder: Path = FOLDER) -> dict:
     """Measure everything and write it to `folder`; returns what is in shading_artifacts.json.
 
-    Raises SimulationError, BuildError.
+    Raises MismatchError, BuildError, SimulationError.
     """
     folder.mkdir(parents=True, exist_ok=True)
     progress("Mach bands")
@@ -131,7 +133,7 @@ def table(found: dict) -> Table:
     for shape, levels in found["mach_bands"].items():
         for level, by in levels.items():
             out.add_row(
-                f"slope jump at edges, {shape} of {level}, LSB/dot, mean",
+                f"slope jump at edges, {shape} of {level}, LSB/pixel, mean",
                 *(f"{by[t]['slope_mean']:.3f}" for t in TECHNIQUES),
             )
             out.add_row(

@@ -1,23 +1,22 @@
-"""Error against run time and against hardware, over methods and word widths: `make sweep`.
+# SPDX-License-Identifier: MIT
+"""Error against run time and against hardware, over methods and word widths: `phong75 sweep`.
 
-Every configuration of `model.sweep` is built, simulated, compared with its twin and measured; the
-results go to build/sweep/precision.csv and, as charts, beside it. What did not change since the
-last run is not simulated, synthesized or routed again. A frame's time is cycles counted in
-simulation times a clock of place and route: of this run for what ROUTE names, else a kept one (see
-`scripts.clocks`), else a stated one, which table, charts and a last line say.
+Every configuration of `model.studies.methods` is built, simulated, compared with its twin and
+measured; the results go to build/sweep/precision.csv and, as charts, beside it. What did not
+change since the last run is not simulated, synthesized or routed again. A frame's time is cycles
+counted in simulation times a clock of place and route: of this run for what --route names, else a
+kept one (see `scripts.synthesis.clocks`), else a stated one, which table, charts and a last line
+say.
 
-Exit code: 0; 1 if the RTL of a configuration differs from its twin, misses a bound that is derived
-for it, or a tool failed; 2 if the input is wrong, with one line on stderr that says what.
+Exit code: 0; 1 if the RTL of a configuration differs from its twin or misses a bound that is
+derived for it; 2 if the input is wrong or a tool failed, with one line on stderr that says what.
 """
 
 from __future__ import annotations
 
-import argparse
 import csv
-import difflib
 import multiprocessing
 import os
-import sys
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
@@ -25,17 +24,15 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from phong75.model.config import Config
-from phong75.model.frame import InputError
 from phong75.model.studies import pareto
 from phong75.model.studies.charts import cost_chart, time_chart
 from phong75.model.studies.methods import CONFIGS, Point, points
-from phong75.scripts import recorded
+from phong75.scripts import console, recorded
+from phong75.scripts.configurations import unknown
 from phong75.scripts.synthesis import clocks, ecp5
-from phong75.sim.build import BuildError, runtime
-from phong75.sim.design import BUILD
+from phong75.sim.build import runtime, runtime_built
 from phong75.sim.elaborate import instances
 from phong75.sim.frame.methods import FOLDER, measure
-from phong75.sim.frame.run_frame import SimulationError
 
 STATED_MHZ = 200.0
 COLUMNS = (
@@ -46,39 +43,22 @@ COLUMNS = (
 )  # fmt: skip
 
 
-class _Parser(argparse.ArgumentParser):
-    """Reports a wrong command line like any other wrong input."""
-
-    def error(self, message):
-        raise InputError(message)
-
-
-def parse(argv) -> argparse.Namespace:
-    """The command line `argv`: `area`, bool, and `route`, the configurations to route.
-
-    Raises InputError.
-    """
-    parser = _Parser(prog="sweep", description=__doc__.partition("\n")[0])
-    parser.add_argument("--area", default="", help="1: synthesize, for the hardware's size")
-    parser.add_argument("--route", default="", help="1, or names: place and route, for the clock")
-    given = parser.parse_args(argv)
-    if given.area not in ("", "0", "1"):
-        raise InputError(f"AREA is `{given.area}`; it must be 0 or 1")
-    given.area = given.area == "1"
-    if given.route in ("", "0", "1"):
-        given.route = set(CONFIGS) if given.route == "1" else set()
-    else:
-        given.route = set(given.route.split(","))
-        for name in sorted(given.route - set(CONFIGS)):
-            close = difflib.get_close_matches(name, CONFIGS, 1)
-            hint = f"; did you mean {close[0]}?" if close else ""
-            raise InputError(f"ROUTE: there is no configuration `{name}`{hint}")
-    return given
+def names(route: str) -> set[str]:
+    """The configurations that --route names, comma-separated: none for "" and "0", every one for
+    "all" and "1". Raises InputError."""
+    if route in ("", "0"):
+        return set()
+    if route in ("all", "1"):
+        return set(CONFIGS)
+    wanted = set(route.split(","))
+    for name in sorted(wanted - set(CONFIGS)):
+        raise unknown("--route", name, CONFIGS, "phong75 configs")
+    return wanted
 
 
 def hardware(config: Config, area: bool, route: bool) -> dict:
     """Clock of `config`, where it comes from and which modules its longest path leads from and to,
-    multipliers and logic; None for what nobody asked for and no record has.
+    multipliers and logic; None for what was not asked for and no record has.
 
     Raises SynthesisError, BuildError.
     """
@@ -93,7 +73,7 @@ def hardware(config: Config, area: bool, route: bool) -> dict:
     elif found := clocks.kept(config):
         return found
     elif area:
-        folder = BUILD / "synth" / config.name
+        folder = ecp5.FOLDER / config.name
         folder.mkdir(parents=True, exist_ok=True)
         used, clock = ecp5.synthesize(config, folder)["resources"], stated
     else:
@@ -132,10 +112,10 @@ def unrouted(rows: list[dict]) -> str:
     names = [found["name"] for found in rows if found["clock_source"] == "stated"]
     if not names:
         return ""
-    todo = "1" if len(names) == len(rows) else ",".join(names)
+    todo = "all" if len(names) == len(rows) else ",".join(names)
     return (
         f"{len(names)} of {len(rows)} configurations have no clock of today's sources, "
-        f"{STATED_MHZ:g} MHz are stated: make sweep ROUTE={todo}"
+        f"{STATED_MHZ:g} MHz are stated: phong75 sweep --route {todo}"
     )
 
 
@@ -189,21 +169,24 @@ def finish(rows: list[dict], folder: Path = FOLDER) -> None:
     cost_chart(rows, folder / "precision_hardware")
 
 
-def run(todo: list[Point], area: bool, route: set[str]) -> list[dict]:
+def run(todo: list[Point], area: bool, route: set[str], record: bool) -> list[dict]:
     """The rows of `todo`, those named in `route` with the clock of place and route.
 
-    As many at a time as there are processors; shows progress. Raises as `row`.
+    As many at a time as there are processors; shows progress. record: keep the clocks of place and
+    route in results/. Raises as `row`.
     """
-    console = Console(stderr=True)
+    if not runtime_built():
+        console.phase("compiling Verilator's runtime (once)")
     runtime()  # once, before all need it
     rows: dict[str, dict] = {}
     columns = (
         TextColumn("{task.description:<24}"), BarColumn(), MofNCompleteColumn(),
         TimeElapsedColumn(),
     )  # fmt: skip
+    terminal = Console(stderr=True)
     spawn = multiprocessing.get_context("spawn")
     with (
-        Progress(*columns, console=console, transient=True) as bar,
+        Progress(*columns, console=terminal, transient=True) as bar,
         ProcessPoolExecutor(os.cpu_count(), mp_context=spawn) as pool,
     ):
         task = bar.add_task("sweep", total=len(todo))
@@ -211,40 +194,35 @@ def run(todo: list[Point], area: bool, route: set[str]) -> list[dict]:
         try:
             for job in as_completed(jobs):
                 found = rows[jobs[job].config.name] = job.result()
-                if found["name"] in route:
+                if record and found["name"] in route and not failures([found]):
                     clocks.keep(found["name"], found)
                 bar.update(task, advance=1, description=found["name"])
-                if not console.is_terminal:
-                    print(f"{len(rows)} of {len(todo)}: {found['name']}", file=sys.stderr)
+                if not terminal.is_terminal:
+                    console.note(f"{len(rows)} of {len(todo)}: {found['name']}")
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
     return [rows[point.config.name] for point in todo]
 
 
-def main(argv=None) -> int:
-    """Run with the command line `argv`; returns the exit code."""
-    try:
-        given = parse(argv)
-    except InputError as error:
-        print(f"Error: {error}", file=sys.stderr)
-        return 2
-    try:
-        rows = run(points(), given.area, given.route)
-    except (BuildError, SimulationError, ecp5.SynthesisError) as error:
-        print(f"Error: {error}", file=sys.stderr)
-        return 1
+def main(area: bool, route: set[str], record: bool) -> int:
+    """Measure every point, synthesizing all (`area`) and routing those in `route`; returns the
+    exit code. Raises as `row`."""
+    recorded.check(record)
+    if area or route:
+        ecp5.versions()
+    rows = run(points(), area, route, record)
     finish(rows)
     wrong = failures(rows)
-    if not wrong:
-        recorded.save("sweep", "make sweep", ("verilator", "numpy"), figures(rows))
+    if record:
+        recorded.record(
+            "sweep", "make sweep", ("verilator", "numpy"), figures(rows),
+            {"configurations": len(rows)}, failed=bool(wrong),
+        )  # fmt: skip
     for line in wrong:
-        print(f"Error: {line}", file=sys.stderr)
+        console.failure(line)
     if line := unrouted(rows):
-        print(line)
-    print(f"{len(rows)} configurations: build/sweep/precision.csv, and charts beside it")
-    return 1 if wrong else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        console.note(line)
+    folder = console.shown(FOLDER)
+    console.say(f"{len(rows)} configurations: {folder}/precision.csv, and charts beside it")
+    return console.FAILED if wrong else console.GOOD

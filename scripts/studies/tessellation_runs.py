@@ -1,20 +1,19 @@
-"""Error against the true surface, over meshes from coarse to fine: `make tessellation`.
+# SPDX-License-Identifier: MIT
+"""Error against the true surface, over meshes from coarse to fine: `phong75 tessellation`.
 
 Sphere, torus and teapot patch through the RTL by every technique, and in the model alone by the
 cubic interpolant that Phong (1975) mentions. Writes build/sweep/tessellation.csv, .json (orders of
-convergence, and techniques against each other), .png and .svg; and what scripts/sweep_arguments.py
-writes. Exit code: 0; 1 if a pixel of RTL and model differs.
+convergence, and techniques against each other), .png and .svg; and what
+scripts/studies/artifact_runs.py writes. Exit code: 0; 1 if a pixel of RTL and model differs.
 """
 
 from __future__ import annotations
 
 import csv
 import json
-import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from rich.console import Console
 from rich.table import Table
 
 from phong75.model import twin
@@ -23,18 +22,20 @@ from phong75.model.config import TECHNIQUES
 from phong75.model.studies import tessellation
 from phong75.model.studies.charts import tessellation_chart
 from phong75.model.studies.surfaces import SURFACES
-from phong75.scripts import recorded
+from phong75.scripts import console, recorded
+from phong75.scripts.console import MismatchError
 from phong75.scripts.studies import artifact_runs
 from phong75.sim.design import BUILD
-from phong75.sim.frame.run_frame import Job, SimulationError, simulate_jobs
+from phong75.sim.frame.run_frame import Job, simulate_jobs
 
 FOLDER = BUILD / "sweep"
 #: Meshes whose errors are recorded: {shape: level}.
 SHOWN = {"sphere": 32, "torus": 32, "patch": 8}
-#: cycles are empty for the cubic, which has no hardware. The errors are those of the codes that
-#: came out of the RTL; method_...: of the technique itself, before any rounding (for the cubic
-#: both are); facing: dots whose normal is within 60 degrees of the eye; highlight: dots with more
-#: than half of the largest specular term. from_phong: from Phong's picture of the same mesh.
+#: Columns of the table. `cycles` is empty for the cubic, which has no hardware. Errors are those of
+#: the RTL's codes; errors named method_... are those of the technique before any rounding (for the
+#: cubic all errors are). facing: pixels whose normal is within 60 degrees of the eye. highlight:
+#: pixels with more than half of the largest specular term. from_phong: difference from Phong's
+#: picture of the same mesh.
 COLUMNS = (
     "shape", "technique", "level", "triangles", "spans", "cycles", "max_lsb", "rms_lsb",
     "p999_lsb", "mean_lsb", "method_max_lsb", "method_rms_lsb", "facing_rms_lsb",
@@ -48,7 +49,7 @@ def measure(
 ) -> list[dict]:  # fmt: skip
     """A row (COLUMNS) for each technique and each of `levels` of `shape`.
 
-    Raises SimulationError if RTL and model differ; BuildError.
+    Raises MismatchError, BuildError, SimulationError.
     """
     surface, rows = SURFACES[shape], []
     for technique in tessellation.METHODS:
@@ -66,7 +67,7 @@ def measure(
             results = simulate_jobs([Job(frame) for frame in frames], config)
             for frame, result in zip(frames, results, strict=True):
                 if metrics.compare(twin.render(frame, config), result.pixels).mismatches:
-                    raise SimulationError(f"{shape}, {technique}: RTL and model differ")
+                    raise MismatchError(f"{shape}, {technique}: RTL and model differ")
         if technique == "phong":
             phong = pictures
         for k, (level, picture) in enumerate(zip(levels, pictures, strict=True)):
@@ -160,7 +161,7 @@ def run(progress: Callable[[str], None] = lambda text: None, folder: Path = FOLD
 
 def table(found: dict) -> Table:
     """The orders of convergence, to read."""
-    out = Table(title="order of convergence, RMS: all dots, facing the eye, highlight")
+    out = Table(title="order of convergence, RMS: all pixels, facing the eye, highlight")
     out.add_column("shape")
     for technique in tessellation.METHODS:
         out.add_column(technique, justify="right")
@@ -185,23 +186,20 @@ def figures(rows: list[dict], found: dict) -> dict:
     return {"meshes": meshes, "orders": summary(rows)["orders"], **found}
 
 
-def main() -> int:
-    """Measure all, print it, and record the figures; returns the exit code."""
-    console = Console(stderr=True)
-    try:
-        rows = run(lambda text: console.print(f"{text} ..."))
-        found = artifact_runs.run(lambda text: console.print(f"{text} ..."))
-    except SimulationError as error:
-        print(f"Error: {error}", file=sys.stderr)
-        return 1
-    Console().print(table(summary(rows)))
-    Console().print(artifact_runs.table(found))
-    recorded.save(
-        "tessellation", "make tessellation", ("verilator", "numpy"), figures(rows, found)
-    )  # fmt: skip
-    print(f"{FOLDER}: tessellation and arguments: .csv .json .png .svg")
-    return 0
+def main(record: bool) -> int:
+    """Measure all, print it, and record what the README shows; returns the exit code.
 
-
-if __name__ == "__main__":
-    sys.exit(main())
+    Raises as `measure`.
+    """
+    recorded.check(record)
+    rows = run(console.phase)
+    found = artifact_runs.run(console.phase)
+    console.show(table(summary(rows)), artifact_runs.table(found))
+    if record:
+        recorded.record(
+            "tessellation", "make tessellation", ("verilator", "numpy"), figures(rows, found),
+            {"meshes": len(rows)},
+        )  # fmt: skip
+    folder = console.shown(FOLDER)
+    console.say(f"{folder}: tessellation and arguments: .csv .json .png .svg")
+    return console.GOOD

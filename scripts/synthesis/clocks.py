@@ -2,7 +2,8 @@
 """The clocks that place and route reported, kept in results/clocks.json.
 
 To route all configurations of the sweep takes more than an hour, so what was routed is kept, with
-the key of what it depends on. A clock counts only where that key is today's.
+the key of what it depends on. A clock counts only where that key is today's. Where Yosys and
+nextpnr are not installed, the record's own versions of them are taken for today's.
 """
 
 from __future__ import annotations
@@ -23,7 +24,13 @@ FIGURES = ("clock_mhz", "dsp", "lut_sites", "ff", "ebr", "longest_path")
 
 def key(config: Config) -> str:
     """Key of the clock of `config` today. Raises BuildError."""
-    return ecp5.design_key(config, GRADE, SEED)
+    tools = ecp5.versions() if ecp5.installed() else _recorded_tools()
+    return ecp5.design_key(config, GRADE, SEED, tools)
+
+
+def _recorded_tools() -> dict[str, str]:
+    """{package: version} of the record; empty without one."""
+    return (recorded.load(NAME) or {}).get("tools", {})
 
 
 def kept(config: Config) -> dict | None:

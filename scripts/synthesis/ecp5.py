@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Synthesis, place and route, and bitstream for a Lattice ECP5, by Yosys, nextpnr and Trellis.
 
 Every step is kept with the hash of what went into it, so that a run repeats only what changed.
@@ -29,6 +30,9 @@ from phong75.sim.build import generate_header, run_tool
 from phong75.sim.design import BUILD
 from phong75.sim.elaborate import includes, instances
 
+#: Where each configuration has a folder of its own.
+FOLDER = BUILD / "synth"
+
 DEVICE, PACKAGE, DEVICE_OPTION = "LFE5U-85F", "CABGA381", "--85k"
 SEEDS = (1, 2, 3)
 SIZES = ((512, 512), (640, 480), (1280, 720), (1920, 1080), (3840, 2160))
@@ -57,9 +61,24 @@ class Grade:
 GRADES = {6: Grade(287, 212), 8: Grade(380, 271)}
 
 
+def installed() -> bool:
+    """Whether Yosys and nextpnr are there."""
+    try:
+        return bool(versions())
+    except SynthesisError:
+        return False
+
+
 def versions() -> dict[str, str]:
-    """Versions of the packages that the tools come in."""
-    return {name: importlib.metadata.version(name) for name in _PACKAGES}
+    """Versions of the packages that the tools come in. Raises SynthesisError if one is missing."""
+    try:
+        return {name: importlib.metadata.version(name) for name in _PACKAGES}
+    except importlib.metadata.PackageNotFoundError as error:
+        raise SynthesisError(MISSING.format(error.name)) from None
+
+
+#: What to do where the tools are not installed.
+MISSING = "{} is not installed: scripts/setup.sh hardware, or pip install 'phong75[hardware]'"
 
 
 def _digest(*parts: str | bytes | Path) -> str:
@@ -84,7 +103,7 @@ def _run(tool: str, arguments: list[str], log: Path) -> None:
                 cwd=design.PACKAGE, stdout=out, stderr=subprocess.STDOUT, timeout=_TIMEOUT_S,
             )  # fmt: skip
         except FileNotFoundError:
-            raise SynthesisError(f"{tool} is not installed: make setup") from None
+            raise SynthesisError(MISSING.format(tool)) from None
         except subprocess.TimeoutExpired:
             raise SynthesisError(f"{tool} took more than {_TIMEOUT_S} s ({log})") from None
     if done.returncode:
@@ -448,17 +467,20 @@ def design_text(config: Config) -> str:
     return run_tool(["verilator", "-E", "-P", *include, *files, design.ECP5 / f"{_HARNESS}.v"])
 
 
-def design_key(config: Config, grade: int, seed: int) -> str:
+def design_key(config: Config, grade: int, seed: int, tools: dict[str, str] | None = None) -> str:
     """What a routed clock of `config` depends on, as a hash: `design_text`, how it is synthesized
-    and routed, the tools, the limits of the blocks. Raises BuildError.
+    and routed, the tools ({package: version}, None: those installed), the limits of the blocks.
+    Raises BuildError, SynthesisError.
 
     For a record that is kept for long. The keys of build/synth go by the files, so that any edit of
-    any of them ends what is kept there; this one stays the same where only comments, or modules and
-    fields of a configuration that this one does not use, were edited. (Lines that move give Yosys
-    other names, and with them a seed of nextpnr other luck; the clock is still one of this design.)
+    any of them ends what is kept there; this one stays the same where only comments and blanks, or
+    modules and fields of a configuration that this one does not use, were edited. (Lines that move
+    give Yosys other names, and with them a seed of nextpnr other luck; the clock is still one of
+    this design.)
     """
-    how = (_YOSYS, str(_nextpnr(BUILD / "synth", grade, seed)), str(versions()))
-    return _digest(*how, str(GRADES[grade]), design_text(config))
+    arguments = str(_nextpnr(BUILD / "synth", grade, seed))
+    how = (_YOSYS, arguments, str(versions() if tools is None else tools))
+    return _digest(*how, str(GRADES[grade]), re.sub(r"\s+", "", design_text(config)))
 
 
 def run(
@@ -470,7 +492,7 @@ def run(
     count_gates: in standard cells, too. `step(name)` is a context around each step.
     Raises SynthesisError.
     """
-    folder = BUILD / "synth" / config.name
+    folder = FOLDER / config.name
     folder.mkdir(parents=True, exist_ok=True)
     with step("synthesis"):
         synthesis = synthesize(config, folder)

@@ -10,13 +10,14 @@ from pathlib import Path
 
 import cocotb
 
+from phong75.sim import environment
 from phong75.sim.frame.frame_tb import FrameTB
 
 
 @cocotb.test()
 async def frame_jobs(dut):
     """Run the jobs of jobs.json one after the other; write their counters to counters.json."""
-    folder = Path(os.environ["PHONG_JOBS"])
+    folder = Path(os.environ[environment.JOBS])
     tb = FrameTB(dut)
     await tb.reset()
     results = []

@@ -20,6 +20,7 @@ from phong75.model.twin.core.phong_unit import interpolate
 from phong75.model.twin.core.shading_unit import shading_unit
 from phong75.model.twin.core.span_walker import span_walker
 from phong75.model.twin.techniques.intensity_code import intensity_code
+from phong75.sim import environment
 from phong75.sim.build import Bench
 from phong75.sim.design import BUILD
 from phong75.sim.module.unit_tb import UnitTB, first_difference
@@ -53,7 +54,7 @@ async def locate_stage(dut):
 
     The result is a message, or null if all stages agree with the twin.
     """
-    folder = Path(os.environ["PHONG_VECTORS"])
+    folder = Path(os.environ[environment.VECTORS])
     where = json.loads((folder / "where.json").read_text())
     config = TECHNIQUES[where["technique"]]
     frame = read_spans(folder / "spans", config)
@@ -89,7 +90,8 @@ def locate(frame: Frame, pixel: int, config: Config = DEFAULT, rtl: Path | None 
             (folder / "where.json").write_text(json.dumps(where | {"module": module}))
             top, text = bench_source(module)
             bench = Bench(top, sources={f"{top}.v": text}, **({"rtl": rtl} if rtl else {}))
-            bench.run("phong75.sim.frame.locate", folder, extra_env={"PHONG_VECTORS": str(folder)})
+            handed = {environment.VECTORS: str(folder)}
+            bench.run("phong75.sim.frame.locate", folder, extra_env=handed)
             message = json.loads((folder / "result.json").read_text())
             if message:
                 return message

@@ -19,7 +19,8 @@ from phong75.model.frame import Frame
 from phong75.model.registers import writes
 from phong75.model.spans import write_spans
 from phong75.model.twin import Pixels
-from phong75.sim.build import Bench
+from phong75.sim import environment
+from phong75.sim.build import Bench, silent
 from phong75.sim.design import BUILD
 
 
@@ -100,17 +101,19 @@ def body_offset(path: Path) -> int:
 def simulate_jobs(
     jobs: list[Job], config: Config = DEFAULT, bench: Bench | None = None,
     waves: Path | None = None, power_up: int | None = None,
+    progress: Callable[[str], None] = silent,
 ):  # fmt: skip
     """Simulate `jobs` one after the other in one process. Returns a list of SimResult.
 
     bench: the testbench, by default frame_bench in `config`. waves: VCD file to write; `bench` must
     be built with a trace. power_up: seed of random register contents at power-up, None for zeros.
-    Raises BuildError, SimulationError.
+    progress: called with what a phase does, before it. Raises BuildError, SimulationError.
     """
     bench = bench or Bench("frame_bench", config)
     begin = time.perf_counter()
-    bench.make()
+    bench.make(progress)
     build_s = time.perf_counter() - begin
+    progress("simulating")
     (BUILD / "run").mkdir(parents=True, exist_ok=True)
     folder = Path(tempfile.mkdtemp(dir=BUILD / "run"))
     try:
@@ -135,7 +138,7 @@ def simulate_jobs(
                 arguments += ["+verilator+rand+reset+2", f"+verilator+seed+{power_up}"]
             bench.run(
                 "phong75.sim.frame.frame_jobs", folder, test_args=arguments,
-                extra_env={"PHONG_JOBS": str(folder)},
+                extra_env={environment.JOBS: str(folder)},
             )  # fmt: skip
             counters = json.loads((folder / "counters.json").read_text())
         except (OSError, RuntimeError, SystemExit) as error:
@@ -154,16 +157,13 @@ def simulate_jobs(
             )  # fmt: skip
         return results
     finally:
-        if "PHONG_KEEP" not in os.environ:
+        if environment.KEEP not in os.environ:
             shutil.rmtree(folder, ignore_errors=True)
 
 
 def simulate(
     spans_path, frame: Frame, config: Config = DEFAULT,
-    progress: Callable[[float], None] | None = None,
+    progress: Callable[[str], None] = silent,
 ) -> SimResult:  # fmt: skip
     """Simulate one frame whose span file is `spans_path`. Raises BuildError, SimulationError."""
-    result = simulate_jobs([Job(frame, Path(spans_path))], config)[0]
-    if progress:
-        progress(1.0)
-    return result
+    return simulate_jobs([Job(frame, Path(spans_path))], config, progress=progress)[0]

@@ -16,8 +16,10 @@ import numpy as np
 from cocotb.clock import Clock
 from cocotb.triggers import ClockCycles, FallingEdge
 
+from phong75.sim import environment
+
 #: The tests send one of this many vectors; more than 1 for a slow simulator.
-THIN = int(os.environ.get("PHONG_THIN", "1"))
+THIN = int(os.environ.get(environment.THIN, "1"))
 
 #: The value that stands for an unknown (X) in an output file; no output has it.
 UNKNOWN = "{1'b1, 63'b0}"
@@ -110,7 +112,7 @@ class VectorTB:
 
     def __init__(self, dut):
         self.dut = dut
-        self.folder = Path(os.environ["PHONG_VECTORS"])
+        self.folder = Path(os.environ[environment.VECTORS])
         self.job = 0
         dut.start.value = 0
         Clock(dut.clk, 10, unit="ns", impl="gpi").start()

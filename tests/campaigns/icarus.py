@@ -1,75 +1,82 @@
 # SPDX-License-Identifier: MIT
-"""The module tests once more, in Icarus Verilog with its four states: `make icarus`.
+"""The module tests in Icarus Verilog, which simulates 0, 1, X and Z: `make icarus`.
 
-Arguments: names of benches (see sim/benches.py), else all. Exit code: 0; 1 if a test fails; 2 if
-Icarus is missing or refuses a bench.
+Exit code: 0; 1 if a test fails; 2 if Icarus Verilog is missing or rejects a bench.
 """
 
 from __future__ import annotations
 
 import logging
 import os
-import re
 import subprocess
 import sys
 import time
-import xml.etree.ElementTree as ET
+from typing import Annotated
 
-from rich.console import Console
+import typer
 
-from phong75.scripts import recorded
-from phong75.sim.build import BuildError
+from phong75.scripts import console, options, recorded
+from phong75.scripts.configurations import unknown
+from phong75.scripts.main import single
+from phong75.sim import environment
 from phong75.sim.design import BUILD
 from phong75.sim.icarus import THIN, IcarusBench
+from phong75.sim.results import read_results
 from tests.modules.benches import NAMES, module_bench
 
 SEED = 75
 
 
-def main(argv: list[str]) -> int:
-    """Run the benches `argv`; returns the exit code."""
-    wrong = set(argv) - set(NAMES)
-    if wrong:
-        print(f"no such bench: {' '.join(wrong)}; there are {' '.join(NAMES)}", file=sys.stderr)
-        return 2
+def run(name: str) -> tuple[int, list[str]]:
+    """Run the bench `name`; returns the number of its tests and the failures, one message each.
+
+    Raises BuildError.
+    """
+    bench = module_bench(name)
+    folder = BUILD / "icarus" / "run" / name
+    begin = time.monotonic()
+    IcarusBench(bench.top, bench.config, bench.sources).run(
+        bench.tests, folder, seed=SEED, extra_env=bench.environment(folder, SEED)
+    )
+    results = read_results(folder)
+    seconds = time.monotonic() - begin
+    verdict = "failed" if results.failures else "passed"
+    console.say(f"{name}: {len(results.tests)} tests {verdict}, {seconds:.0f} s")
+    return len(results.tests), [f"{name}: {failure}" for failure in results.failures]
+
+
+def main(
+    benches: Annotated[
+        list[str] | None, typer.Argument(metavar="BENCH", help="Names of benches; else all.")
+    ] = None,
+    record: options.Record = False,
+) -> int:
+    """Run the module tests in Icarus Verilog, with X in every register at power-up (minutes)."""
+    recorded.check(record)
+    for name in benches or []:
+        if name not in NAMES:
+            raise unknown("BENCH", name, NAMES)
     logging.disable(logging.CRITICAL)
-    os.environ["PHONG_THIN"] = str(THIN)
-    console = Console(stderr=True)
+    os.environ[environment.THIN] = str(THIN)
     total, failures = 0, []
-    for name in argv or NAMES:
-        console.print(f"{name} ...")
-        about = module_bench(name)
-        folder = BUILD / "icarus" / "run" / name
-        begin = time.monotonic()
-        try:
-            results = IcarusBench(about.top, about.config, about.sources).run(
-                about.tests, folder, seed=SEED,
-                extra_env=about.environment(folder, SEED),
-            )  # fmt: skip
-        except BuildError as error:
-            print(error, file=sys.stderr)
-            return 2
-        cases = ET.parse(results).getroot().findall(".//testcase")
-        failed = [case for case in cases if case.find("failure") is not None]
-        total += len(cases)
-        said = re.findall(r"(?:AssertionError|ValueError): .*", (folder / "sim.log").read_text())
-        failures += [f"{name}: {case.get('name')}" for case in failed] + (said if failed else [])
-        if not cases:
-            failures.append(f"{name}: no test ran ({folder / 'sim.log'})")
-        print(f"{name}: {len(cases)} tests, {len(failed)} failed, {time.monotonic() - begin:.0f} s")
+    for name in benches or NAMES:
+        console.phase(name)
+        count, messages = run(name)
+        total += count
+        failures += messages
     for line in failures:
-        print(line, file=sys.stderr)
-    print(f"{total} tests in four states, {len(failures)} complaints")
-    if not argv:
-        said = subprocess.run(["iverilog", "-V"], text=True, capture_output=True).stdout
-        version = said.split()[3]
-        recorded.save(
+        console.failure(line)
+    console.say(f"{total} tests in Icarus Verilog, {len(failures)} failures")
+    if record:
+        version = subprocess.run(["iverilog", "-V"], text=True, capture_output=True).stdout
+        recorded.record(
             "icarus", "make icarus", ("cocotb",),
-            {"tests": total, "complaints": len(failures), "icarus_version": version,
+            {"tests": total, "complaints": len(failures), "icarus_version": version.split()[3],
              "one_vector_in": THIN},
+            failed=bool(failures), part="only some benches were run" if benches else "",
         )  # fmt: skip
-    return 1 if failures else 0
+    return console.FAILED if failures else console.GOOD
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(single(main, sys.argv[1:], "icarus"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Mutation testing of rtl/: `python -m tests.campaigns.mutation`, with --help for the options.
+"""Mutation testing of rtl/: `make mutate`, or `python -m tests.campaigns.mutation --help`.
 
 A mutant is a copy of the design with one change. There are two kinds of mutants:
 
@@ -19,7 +19,6 @@ Exit code: 0; 1 if a mutant survived; 2 if the command line is wrong.
 
 from __future__ import annotations
 
-import argparse
 import datetime
 import json
 import logging
@@ -35,10 +34,16 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Annotated
+
+import typer
 
 from phong75.model.config import DEFAULT
-from phong75.scripts import recorded
+from phong75.model.frame import InputError
+from phong75.scripts import console, options, recorded
+from phong75.scripts.configurations import unknown
 from phong75.scripts.lint import CONFIGS
+from phong75.scripts.main import single
 from phong75.sim import build, design
 from phong75.sim.build import Bench, BuildError
 from phong75.sim.frame.run_frame import SimulationError
@@ -60,8 +65,9 @@ BENCH_SECONDS = 60
 #: Limit of a worker's memory, bytes: for some mutants Verilator unrolls an endless loop.
 MEMORY = 4 << 30
 
-#: Why a mutant is killed that Verilator or the compiler rejects.
-REFUSED = "does not build"
+#: Reasons of mutants that are killed without a simulation: Verilator or the compiler rejects the
+#: bench; or all benches accept the mutant, but Verilator's lint has a warning.
+REFUSED, LINT = "does not build", "lint: warning"
 
 #: Results of the benches on the design itself: one JSON file per bench, [hash, reason].
 DESIGN_RESULTS = FOLDER / "design"
@@ -312,7 +318,7 @@ def killed_by(mutant: Mutant) -> tuple[str, bool]:
             order.remove(name)
             order.insert(0, name)
             return f"{name}: {reason}", differs
-    return ("lint: complains" if lint_message(rtl) else ""), differs
+    return (LINT if lint_message(rtl) else ""), differs
 
 
 def lint_message(rtl: Path) -> str:
@@ -348,35 +354,34 @@ def _outcomes() -> dict[str, str]:
     return json.loads(OUTCOMES.read_text()) if OUTCOMES.is_file() else {}
 
 
-def _record(everything: list[Mutant], known: dict[str, str]) -> None:
-    """Put what was found into the record, file by file, where all mutants of a file have been
-    tried; the other files' results stay."""
-    found = recorded.figures("mutate").get("files", {})
-    found = {name: of for name, of in found.items() if name in {file.name for file in _files()}}
+def _record(everything: list[Mutant], survivors: list[Mutant], part: str) -> None:
+    """Record the counts of each file and kind of which all mutants have been run.
+
+    The counts of other files stay. `recorded.record` refuses a run with `survivors` and a partial
+    run (`part` says why it is partial).
+    """
+    known = explained()
+    names = {file.name for file in _files()}
+    files = recorded.figures("mutate").get("files", {})
+    files = {name: kinds for name, kinds in files.items() if name in names}
     outcomes = _outcomes()
     for file, kind in sorted({(m.file, m.kind) for m in everything}):
-        all_of = [m for m in everything if (m.file, m.kind) == (file, kind)]
-        ours = [outcomes.get(m.name) for m in all_of if m.key not in known]
-        if None in ours:
+        group = [m for m in everything if (m.file, m.kind) == (file, kind)]
+        reasons = [outcomes.get(m.name) for m in group if m.key not in known]
+        if None in reasons:
             continue
-        built = sum(why.endswith((REFUSED, "complains")) for why in ours)
-        found.setdefault(file, {})[kind] = {
-            "mutants": len(all_of), "refused": built, "killed": len(ours) - built - ours.count(""),
-            "survived": ours.count(""), "equivalent": len(all_of) - len(ours),
+        refused = sum(reason.endswith((REFUSED, LINT)) for reason in reasons)
+        survived = reasons.count("")
+        files.setdefault(file, {})[kind] = {
+            "mutants": len(group), "refused": refused,
+            "killed": len(reasons) - refused - survived, "survived": survived,
+            "equivalent": len(group) - len(reasons),
             "date": datetime.date.today().isoformat(), "commit": recorded.commit(),
         }  # fmt: skip
-    recorded.save("mutate", "make mutate", ("verilator", "cocotb"), {"files": found})
-
-
-def _arguments() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="mutate", description=__doc__.split("\n\n")[1])
-    parser.add_argument("--files", nargs="+", metavar="MODULE", help="these files of rtl/ only")
-    parser.add_argument("--kind", choices=KINDS, help="mutants of this kind only")
-    parser.add_argument("--sample", type=int, metavar="N", help="N mutants at random")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="mutants at a time")
-    parser.add_argument("--again", action="store_true", help="not those killed before")
-    parser.add_argument("--list", action="store_true", help="show the mutants, run nothing")
-    return parser.parse_args()
+    recorded.record(
+        "mutate", "make mutate", ("verilator", "cocotb"), {"files": files},
+        failed=bool(survivors), part=part,
+    )  # fmt: skip
 
 
 def _pool(jobs: int):
@@ -390,9 +395,12 @@ def _campaign(chosen: list[Mutant], jobs: int) -> list[Mutant]:
     Raises RejectedDesignError, BuildError.
     """
     survivors: list[Mutant] = []
+    if not chosen:
+        return survivors
     tried = _outcomes()
     shutil.rmtree(DESIGN_RESULTS, ignore_errors=True)
-    # Before the workers start, so that all of them have the results.
+    # Both before the workers start, which all need them.
+    console.phase("compiling Verilator's runtime and elaborating all benches (once)")
     build.runtime()
     contents()
     begin = time.monotonic()
@@ -414,48 +422,79 @@ def _campaign(chosen: list[Mutant], jobs: int) -> list[Mutant]:
     return survivors
 
 
-def main() -> int:
-    """Run the campaign; returns the exit code."""
-    arguments = _arguments()
+def _chosen(files: list[str], kind: str | None) -> tuple[list[Mutant], list[Mutant]]:
+    """All mutants of `files` and `kind`, and those among them that are not listed as equivalent.
+
+    files: names of modules or headers, empty for all. kind: one of KINDS, None for both. Raises
+    InputError.
+    """
+    if kind not in (None, *KINDS):
+        raise InputError(f"--kind is `{kind}`, not one of {', '.join(KINDS)}")
+    by_name = {path.stem: path for path in sorted(_files(), key=lambda file: file.name)}
+    for name in files:
+        if name not in by_name:
+            raise unknown("MODULE", name, by_name)
     known = explained()
-    files = sorted(_files(), key=lambda file: file.name)
-    if arguments.files:
-        by_name = {path.stem: path for path in files}
-        if missing := [name for name in arguments.files if name not in by_name]:
-            print(f"mutate: not in rtl/: {' '.join(missing)}", file=sys.stderr)
-            return 2
-        files = [by_name[name] for name in arguments.files]
-    kinds = (arguments.kind,) if arguments.kind else KINDS
-    everything = [m for path in files for m in mutants(path, kinds)]
-    if not (arguments.files or arguments.kind):
+    everything = [
+        mutant
+        for name in files or by_name
+        for mutant in mutants(by_name[name], (kind,) if kind else KINDS)
+    ]
+    if not (files or kind):
         for key in sorted(set(known) - {m.key for m in everything}):
-            print(f"explained, but no mutant: {key}")
-    chosen = [m for m in everything if m.key not in known]
-    if arguments.again:
+            console.note(f"in {EXPLAINED.name}, but not a mutant: {key}")
+    return everything, [m for m in everything if m.key not in known]
+
+
+def main(
+    modules: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="MODULE", help="Files of rtl/, without .v; else all."),
+    ] = None,
+    kind: Annotated[
+        str | None,
+        typer.Option("--kind", metavar="KIND", help="Mutants of this kind: constant or operator."),
+    ] = None,
+    sample: Annotated[
+        int | None,
+        typer.Option("--sample", metavar="N", help="So many mutants at random.", min=0),
+    ] = None,
+    jobs: Annotated[
+        int, typer.Option("--jobs", metavar="N", help="Mutants at a time.", min=1)
+    ] = os.cpu_count() or 1,
+    again: Annotated[
+        bool, typer.Option("--again", help="Not those that were killed and did not change.")
+    ] = False,
+    show: Annotated[bool, typer.Option("--list", help="Show the mutants, run nothing.")] = False,
+    record: options.Record = False,
+) -> int:
+    """Change each constant and operator of rtl/ and run the tests; every change must fail one."""
+    recorded.check(record)
+    everything, chosen = _chosen(modules or [], kind)
+    if again:
         tried = _outcomes()
         chosen = [m for m in chosen if not tried.get(m.name)]
-    if arguments.sample and arguments.sample < len(chosen):
-        chosen = random.Random(SEED).sample(chosen, arguments.sample)
-    if arguments.list:
+    if sample is not None:
+        chosen = random.Random(SEED).sample(chosen, min(sample, len(chosen)))
+    if show:
         for m in chosen:
-            print(f"{m.file}:{m.line}: {m.old} -> {m.new}: {m.key.partition(': ')[2]}")
-        print(f"{len(chosen)} mutants, {len(everything) - len(chosen)} left out")
-        return 0
+            console.say(f"{m.file}:{m.line}: {m.old} -> {m.new}: {m.key.partition(': ')[2]}")
+        console.say(f"{len(chosen)} mutants, {len(everything) - len(chosen)} not chosen")
+        return console.GOOD
 
     os.environ["COCOTB_MAX_FAILURES"] = "1"
     try:
-        survivors = _campaign(chosen, arguments.jobs)
+        survivors = _campaign(chosen, jobs)
     except RejectedDesignError as error:
-        print(f"mutate: {error}", file=sys.stderr)
-        return 2
-    if not arguments.sample:
-        _record(everything, known)
-    print(
+        raise InputError(str(error)) from None
+    if record:
+        _record(everything, survivors, "only a sample was tried" if sample is not None else "")
+    console.say(
         f"{len(chosen)} mutants, {len(chosen) - len(survivors)} killed, "
-        f"{len(survivors)} survived; {len(everything) - len(chosen)} left out or explained"
+        f"{len(survivors)} survived; {len(everything) - len(chosen)} equivalent or not chosen"
     )
-    return 1 if survivors else 0
+    return console.FAILED if survivors else console.GOOD
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(single(main, sys.argv[1:], "mutate"))

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from phong75.model.config import DEFAULT, TECHNIQUES, Config
 from phong75.model.studies.methods import CONFIGS
+from phong75.sim import environment
 from phong75.sim.design import module_file
 from phong75.sim.module import primitives
 from phong75.sim.module.units import MODULES, bench_source
@@ -51,8 +52,8 @@ class ModuleBench:
         """The environment variables of the cocotb tests; vectors: folder for vector files."""
         module, _, config = self.name.partition("@")
         return {
-            "PHONG_MODULE": module, "PHONG_CONFIG": config or "default",
-            "PHONG_VECTORS": str(vectors), "PHONG_SEED": str(seed),
+            environment.MODULE: module, environment.CONFIG: config or "default",
+            environment.VECTORS: str(vectors), environment.SEED: str(seed),
         }  # fmt: skip
 
 

@@ -13,9 +13,10 @@ from dataclasses import dataclass
 
 import cocotb
 
+from phong75.sim import environment
 from phong75.sim.module.stream_tb import REGIMES, Clocked, pauses
 
-SEED = int(os.environ.get("PHONG_SEED", "75"))
+SEED = int(os.environ.get(environment.SEED, "75"))
 COORDINATE_BITS, MATERIAL_BITS, COLOUR_BITS = 4, 2, 3  # parameters of the bench
 SIZE = 1 << COORDINATE_BITS
 NAMED = [cocotb.Param(regime, regime) for regime in REGIMES]

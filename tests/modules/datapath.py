@@ -22,12 +22,13 @@ from phong75.model.twin.core.specular_cosine import specular_cosine
 from phong75.model.twin.core.specular_power_tables import specular_power_tables
 from phong75.model.twin.core.specular_weight import specular_weight
 from phong75.model.twin.techniques.intensity_code import intensity_code
+from phong75.sim import environment
 from phong75.sim.module.unit_tb import UnitTB
 from phong75.sim.module.units import lanes
 
-SEED = int(os.environ.get("PHONG_SEED", "75"))
+SEED = int(os.environ.get(environment.SEED, "75"))
 RANDOM = 200_000
-MODULE = os.environ["PHONG_MODULE"]
+MODULE = os.environ[environment.MODULE]
 NOTE = f"seed {SEED}"
 
 

@@ -20,13 +20,14 @@ from phong75.model.twin.methods.quadratic_normalizer import quadratic_normalizer
 from phong75.model.twin.methods.specular_power_schlick import specular_power_schlick
 from phong75.model.twin.methods.specular_power_squaring import specular_power_squaring
 from phong75.model.twin.methods.unnormalized import unnormalized
+from phong75.sim import environment
 from phong75.sim.module.unit_tb import UnitTB
 from tests.modules.datapath import _edges, _normals
 
-C = CONFIGS[os.environ.get("PHONG_CONFIG", "default")]
-SEED = int(os.environ.get("PHONG_SEED", "75"))
+C = CONFIGS[os.environ.get(environment.CONFIG, "default")]
+SEED = int(os.environ.get(environment.SEED, "75"))
 RANDOM = 200_000
-MODULE = os.environ["PHONG_MODULE"]
+MODULE = os.environ[environment.MODULE]
 NOTE = f"configuration {C.name}, seed {SEED}"
 
 

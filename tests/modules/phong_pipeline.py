@@ -18,10 +18,11 @@ from phong75.model.spans import illegal_spans, pack, record_bits, span_fields
 from phong75.model.studies.random_frames import random_frame
 from phong75.model.twin import render, zero_normals
 from phong75.scripts.docs import timing
+from phong75.sim import environment
 from phong75.sim.module.stream_tb import REGIMES, PipelineTB, pauses
 
-C = TECHNIQUES.get(os.environ["PHONG_MODULE"], DEFAULT)
-SEED = int(os.environ.get("PHONG_SEED", "75"))
+C = TECHNIQUES.get(os.environ[environment.MODULE], DEFAULT)
+SEED = int(os.environ.get(environment.SEED, "75"))
 SPAN_BITS = span_fields(C)[-1].lsb
 LOW, HIGH = C.normal.min, C.normal.max
 

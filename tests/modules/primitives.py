@@ -16,6 +16,7 @@ import numpy as np
 from phong75.model.config import DEFAULT as C
 from phong75.model.registers import FIELDS, address_bits, word_bits
 from phong75.model.twin.pruning import normal_hold as twin
+from phong75.sim import environment
 from phong75.sim.module.primitives import (
     DEFAULTS,
     INSTANCES,
@@ -26,7 +27,7 @@ from phong75.sim.module.primitives import (
     PrimitivesTB,
 )
 
-SEED = int(os.environ.get("PHONG_SEED", "75"))
+SEED = int(os.environ.get(environment.SEED, "75"))
 NOTE = f"seed {SEED}"
 RANDOM = 20_000
 

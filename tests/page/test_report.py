@@ -20,8 +20,9 @@ from phong75.model.config import TECHNIQUES
 from phong75.model.frame import InputError
 from phong75.model.front.scene import bundled_scenes, load_scene
 from phong75.model.scene_to_frame import front_end
-from phong75.scripts import recorded
+from phong75.scripts import console, recorded
 from phong75.scripts import run as run_scene
+from phong75.scripts.console import Steps
 from phong75.scripts.page import report
 from phong75.sim.design import PACKAGE
 from phong75.sim.frame.run_frame import SimResult
@@ -72,7 +73,8 @@ def build(tmp_path_factory):
     build = tmp_path_factory.mktemp("build")
     for name in SCENES:
         out = build / name
-        assert run_scene.main([f"--scene={name}", "--size=160x120", f"--out={out}"]) == 0
+        request = run_scene.request(name, size=(160, 120), out=out)
+        run_scene.run(request, run_scene.run_frame.simulate, Steps())
     for name, colour in (("gouraud", RED), ("flat", BLUE)):
         shutil.copytree(build / "sphere", build / f"sphere-{name}")
         solid(build / f"sphere-{name}" / "frame.png", colour)
@@ -215,6 +217,10 @@ def test_the_page_of_all_scenes_weighs_less_than_5_mb(build, tmp_path):
     assert len(text.encode()) < report.LIMIT_BYTES == 5_000_000
 
 
+def test_backticks_are_code():
+    assert report.code("a `b` <c> `<d>`") == "a <code>b</code> &lt;c&gt; <code>&lt;d&gt;</code>"
+
+
 def test_the_clock_is_named():
     rows = [point("a", str(k), 1000, 1.0) for k in range(3)]
     shown = report.precision_plots(rows)["frame_us/rms_lsb"]["data"][1]["marker"]["symbol"]
@@ -248,7 +254,7 @@ def test_a_broken_file_is_named(build, tmp_path, capsys, monkeypatch):
         ("sweep/precision.csv", "method,label\na,b\n", "no column `cycles`"),
     ):
         (tmp_path / name).write_text(text)
-        assert report.main(tmp_path) == 2
+        assert console.exit_code(lambda: report.main(tmp_path)) == 2
         lines = capsys.readouterr().err.splitlines()
         assert len(lines) == 1 and lines[0].startswith(f"Error: {tmp_path / name}: {message}")
         assert not (tmp_path / "report").exists()
@@ -264,15 +270,27 @@ def test_the_page_is_one_file(build, capsys, monkeypatch):
 
 def test_scenes_without_a_current_result_are_run(build, monkeypatch, capsys):
     ran = []
-    monkeypatch.setattr(report.run_scene, "main", lambda argv: ran.append(" ".join(argv[:2])) or 0)
+
+    def run(request, simulate, steps):
+        assert request.out == report.folder(build, request.scene, request.config.technique)
+        ran.append((request.scene, request.config.technique))
+
+    monkeypatch.setattr(report.run_scene, "run", run)
     report.run_missing(list(SCENES), build)
-    others = [f"--scene=pyramid --technique={t}" for t in ("gouraud", "flat")]
-    assert ran == others  # the sphere is there in all three
+    # The sphere is there in all three.
+    assert ran == [("pyramid", "gouraud"), ("pyramid", "flat")]
     monkeypatch.setattr(report, "newest_source", lambda: 4e9)
     report.run_missing(["sphere"], build)
-    assert ran[2:] == [f"--scene=sphere --technique={t}" for t in ("phong", "gouraud", "flat")]
-    monkeypatch.setattr(report.run_scene, "main", lambda argv: 2)
-    with pytest.raises(InputError, match="make run SCENE=sphere TECHNIQUE=phong failed"):
+    assert ran[2:] == [("sphere", technique) for technique in ("phong", "gouraud", "flat")]
+
+
+def test_a_scene_that_cannot_be_run_ends_the_report(build, monkeypatch):
+    def run(request, simulate, steps):
+        raise InputError("no such scene")
+
+    monkeypatch.setattr(report, "newest_source", lambda: 4e9)
+    monkeypatch.setattr(report.run_scene, "run", run)
+    with pytest.raises(InputError, match="no such scene"):
         report.run_missing(["sphere"], build)
 
 
