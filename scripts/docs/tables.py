@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from phong75.model.studies.charts import pareto
+from phong75.model.studies import pareto
 from phong75.scripts import recorded
 
 DASH = "–"
@@ -300,7 +300,8 @@ def front(configurations: dict[str, dict[str, Any]]) -> list[tuple[str, dict[str
     """
     items = list(configurations.items())
     errors = [round(of["rms_lsb"], 3) for _, of in items]
-    kept = pareto([of["frame_us"] for _, of in items], errors)
+    points = [(of["frame_us"], error) for (_, of), error in zip(items, errors, strict=True)]
+    kept = pareto.on_front(points)
     return sorted(
         (item for item, on in zip(items, kept, strict=True) if on),
         key=lambda item: item[1]["frame_us"],
