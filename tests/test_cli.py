@@ -567,6 +567,7 @@ FORWARDED = {
     "activity": ("", "RECORD"),
     "waves": ("MODULE CONFIG", ""),
     "bench": ("", "RECORD"),
+    "export": ("CONFIG OUT SCENE SIZE", ""),
     "configs": ("", ""),
 }
 
