@@ -23,6 +23,8 @@ from phong75.model.frame import Frame, InputError
 from phong75.model.front.scene import load_scene
 from phong75.model.registers import writes
 from phong75.model.scene_to_frame import front_end
+from phong75.model.twin.core.register_map import unsupported_write
+from phong75.model.twin.pruning.span_guard import span_guard
 from phong75.model.verilog import header
 from phong75.scripts import console
 from phong75.scripts.export import documents, stimulus, verilog
@@ -119,8 +121,8 @@ def _check(frame: Frame, config: Config, scene: str) -> None:
         return
     needed = pruning.missing(frame, config, full)
     flagged = config.technique == "phong" and (
-        pruning.unsupported_spans(frame, config).any()
-        or any(pruning.unsupported_write(*write, config) for write in writes(frame, config))
+        span_guard(frame.spans, config).any()
+        or any(unsupported_write(*write, config) for write in writes(frame, config))
     )
     if needed or flagged:
         why = f": {needed[0]}" if needed else ""
