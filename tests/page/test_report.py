@@ -43,7 +43,7 @@ def point(method, label, cycles, rms, **more):
         "clock_mhz": 200, "clock_source": "stated", "frame_us": cycles / 200, "max_lsb": 2 * rms,
         "rms_lsb": rms, "p999_lsb": 1.5 * rms, "mean_lsb": rms / 2,
         "correctly_rounded": 1 - rms / 9, "psnr_db": 50, "simulate_s": 1, "model_s": 0.5,
-        "dsp": "", "lut_sites": "", "ff": "", "ebr": "", "pareto": 1,
+        "dsp": "", "lut_cells": "", "ff": "", "ebr": "", "pareto": 1,
     } | more  # fmt: skip
 
 
