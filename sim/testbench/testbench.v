@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// testbench: phong_pipeline by itself, in plain Verilog. It writes the registers, streams a frame of
+// testbench: plain Verilog testbench of phong_pipeline. It writes the registers, streams a frame of
 // spans and compares every pixel with the expected one, three times:
 //   1. without pauses: latency and rate are checked, too;
 //   2. with random pauses of both streams;
@@ -22,7 +22,7 @@ module testbench #(
   localparam COORDINATE_BITS = 12;
   localparam COLOUR_BITS     = 8;
   localparam LATENCY         = 77;  // cycles from the first span taken to the first pixel offered
-  localparam SPANS           = 635;  // in the frame
+  localparam SPANS           = 635;  // spans in the frame
   localparam WRITES          = 276;
   localparam PIXELS          = 872;
   localparam ZERO_NORMALS    = 0;  // pixels that the pipeline reports as zero vectors
@@ -73,16 +73,16 @@ module testbench #(
 
   // ---- control, set at falling edges; everything else changes at rising edges ----
   reg running;         // spans are offered, pixels are taken
-  reg comparing;       // 0: what comes is dropped
+  reg comparing;       // 0: pixels are dropped
   reg [7:0] idle;      // of 256: a cycle in which no new span is offered
   reg [7:0] stall;     // of 256: a cycle in which no pixel is taken
   reg done, failed;
 
-  integer next_span;   // the next to be offered
-  integer next_pixel;  // the next to come
-  integer cycles;      // since the first span was taken
-  integer first_at;    // cycles at the first pixel offered
-  integer last_at;     // cycles at the last pixel taken
+  integer next_span;   // number of the next span to be offered
+  integer next_pixel;  // number of the next pixel to come
+  integer cycles;      // cycles since the first span was taken
+  integer first_at;    // value of `cycles` at the first pixel offered
+  integer last_at;     // value of `cycles` at the last pixel taken
   integer zeros;       // zero normals reported
   integer waited;      // cycles since a pixel was taken
   integer total;       // pixels compared in all runs
@@ -100,7 +100,7 @@ module testbench #(
   wire take = pixel_valid & pixel_ready;
   wire [PIXEL_BITS:0] expected = pixels[next_pixel<PIXELS?next_pixel : 0];
 
-  // Report the first failure; what follows from it is of no interest.
+  // Report the first failure only; later ones follow from it.
   task automatic fail;
     begin
       failed = 1'b1;
@@ -191,7 +191,7 @@ module testbench #(
     end
   end
 
-  // ---- what is done in turn ----
+  // ---- the sequence of the test ----
   task automatic pulse_reset(input integer length);
     begin
       reset = 1'b1;
