@@ -117,7 +117,7 @@ class SceneResult:
     views: list[View]
     error_map: str
     failures: list[str]
-    budget: list[error_budget.Row] = field(default_factory=list)
+    budget: list[error_budget.BudgetRow] = field(default_factory=list)
     features: dict[str, FeatureRow] = field(default_factory=dict)
 
     @property
