@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The worst inputs found, replayed in RTL, and the search that found them."""
 
 import sys

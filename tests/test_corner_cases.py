@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Stiff and extreme cases through the RTL; `make stability` runs more of them."""
 
 import shutil
@@ -101,8 +102,8 @@ def test_an_error_beyond_the_bound_fails(monkeypatch):
     case = next(c for c in corner_cases.cases() if c.name == "normals of 2⁻²⁰")
     shade = phong_unit.shade
     monkeypatch.setattr(phong_unit, "shade", lambda *a: np.minimum(shade(*a) + 1, 255))
-    said = table.judge(case, [result(case.frame)]).failures
-    assert any("the largest error is" in line for line in said)
+    failures = table.judge(case, [result(case.frame)]).failures
+    assert any("the largest error is" in line for line in failures)
 
 
 def test_broken_designs_fail_their_cases(tmp_path):

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The modules of rtl/ecp5/ against what they stand for, on our own models of the chip's blocks."""
 
 from __future__ import annotations
@@ -37,8 +38,8 @@ def ecp5(tmp_path_factory):
 
 def test_same_as_the_behavioural_modules(ecp5, tmp_path):
     """The very tests of multiplier, rom and ram: exhaustive on short words, random on 18 x 18."""
-    about = module_bench("primitives")
-    run(about, tmp_path, Bench(about.top, sources=about.sources, rtl=ecp5))
+    module = module_bench("primitives")
+    run(module, tmp_path, Bench(module.top, sources=module.sources, rtl=ecp5))
 
 
 def test_whole_frame(ecp5):
@@ -96,8 +97,8 @@ def test_cells_of_a_module(tmp_path):
 )
 def test_wrong_input_is_one_line(arguments, capsys):
     assert main.main(["synth", *arguments]) == 2
-    said = capsys.readouterr()
-    assert said.out == "" and said.err.count("\n") == 1
+    printed = capsys.readouterr()
+    assert printed.out == "" and printed.err.count("\n") == 1
 
 
 def _routed(seed, mhz):

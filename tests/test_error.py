@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The twin against float64 and mpmath, by stage and as a whole, held to the derived bounds."""
 
 import mpmath

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Whole frames through the RTL: every bundled scene at the sizes that are promised, to the bit."""
 
 import shutil
@@ -69,5 +70,5 @@ def test_a_broken_design_fails_and_is_located(tmp_path):
     result = simulate_jobs([SimJob(frame)], C, Bench("frame_bench", C, rtl=rtl))[0]
     comparison = metrics.compare(twin.render(frame), result.pixels)
     assert comparison.mismatches > 100
-    said = locate(frame, comparison.first.index, rtl=rtl)
-    assert "stage reflection.versine" in said and "expected" in said and "got" in said
+    message = locate(frame, comparison.first.index, rtl=rtl)
+    assert "stage reflection.versine" in message and "expected" in message and "got" in message

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Mesh files and normals: what is kept, what is made, and what is refused, in one line."""
 
 import re

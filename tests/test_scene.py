@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Scene files: what they may say, what is filled in, and one clear line for every mistake."""
 
 import re

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The bundled shapes: closed, outward, of unit normals that are those of the true surface."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Meshes against true surfaces, and the paper's arguments: a small slice of `make sweep`."""
 
 import json

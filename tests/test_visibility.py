@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Camera, coverage, visibility and spans: each pixel once, nearest surface, right normals."""
 
 from fractions import Fraction

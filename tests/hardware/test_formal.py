@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The fast proofs and their broken twins; `make formal` runs all."""
 
 import pytest
@@ -38,5 +39,5 @@ def test_a_broken_design_that_passes_is_an_error():
     harmless = BrokenDesign(
         "linear_interpolator", "stepped <= ~load;", "stepped <= !load;", "a_flagged", 4
     )
-    said = verdict(proof, run(proof, harmless, cpu_s=300), harmless)
-    assert len(said) == 1 and "should fail a_flagged; it gave pass" in said[0]
+    failures = verdict(proof, run(proof, harmless, cpu_s=300), harmless)
+    assert len(failures) == 1 and "should fail a_flagged; it gave pass" in failures[0]
