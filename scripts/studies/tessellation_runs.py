@@ -31,10 +31,11 @@ from phong75.sim.frame.run_frame import Job, simulate_jobs
 FOLDER = BUILD / "sweep"
 #: Meshes whose errors are recorded: {shape: level}.
 SHOWN = {"sphere": 32, "torus": 32, "patch": 8}
-#: cycles are empty for the cubic, which has no hardware. The errors are those of the codes that
-#: came out of the RTL; method_...: of the technique itself, before any rounding (for the cubic
-#: both are); facing: dots whose normal is within 60 degrees of the eye; highlight: dots with more
-#: than half of the largest specular term. from_phong: from Phong's picture of the same mesh.
+#: Columns of the table. `cycles` is empty for the cubic, which has no hardware. Errors are those of
+#: the RTL's codes; errors named method_... are those of the technique before any rounding (for the
+#: cubic all errors are). facing: pixels whose normal is within 60 degrees of the eye. highlight:
+#: pixels with more than half of the largest specular term. from_phong: difference from Phong's
+#: picture of the same mesh.
 COLUMNS = (
     "shape", "technique", "level", "triangles", "spans", "cycles", "max_lsb", "rms_lsb",
     "p999_lsb", "mean_lsb", "method_max_lsb", "method_rms_lsb", "facing_rms_lsb",
@@ -160,7 +161,7 @@ def run(progress: Callable[[str], None] = lambda text: None, folder: Path = FOLD
 
 def table(found: dict) -> Table:
     """The orders of convergence, to read."""
-    out = Table(title="order of convergence, RMS: all dots, facing the eye, highlight")
+    out = Table(title="order of convergence, RMS: all pixels, facing the eye, highlight")
     out.add_column("shape")
     for technique in tessellation.METHODS:
         out.add_column(technique, justify="right")

@@ -473,13 +473,14 @@ def design_key(config: Config, grade: int, seed: int, tools: dict[str, str] | No
     Raises BuildError, SynthesisError.
 
     For a record that is kept for long. The keys of build/synth go by the files, so that any edit of
-    any of them ends what is kept there; this one stays the same where only comments, or modules and
-    fields of a configuration that this one does not use, were edited. (Lines that move give Yosys
-    other names, and with them a seed of nextpnr other luck; the clock is still one of this design.)
+    any of them ends what is kept there; this one stays the same where only comments and blanks, or
+    modules and fields of a configuration that this one does not use, were edited. (Lines that move
+    give Yosys other names, and with them a seed of nextpnr other luck; the clock is still one of
+    this design.)
     """
     arguments = str(_nextpnr(BUILD / "synth", grade, seed))
     how = (_YOSYS, arguments, str(versions() if tools is None else tools))
-    return _digest(*how, str(GRADES[grade]), design_text(config))
+    return _digest(*how, str(GRADES[grade]), re.sub(r"\s+", "", design_text(config)))
 
 
 def run(

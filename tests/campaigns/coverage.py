@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Line, branch and toggle coverage of rtl/ by module, frame and configuration tests.
 
-Lines and branches have to be covered, all of them, but for WAIVERS; toggles are reported. The
-numbers go to build/coverage.json. Exit code: 0; 1 if something is not covered, or a test fails; 2.
+All lines and branches must be covered, except WAIVERS. Toggles are only reported. The numbers go to
+build/coverage.json. Exit code: 0; 1 if a line or branch is not covered, or a test fails; 2 if no
+coverage was counted.
 """
 
 from __future__ import annotations
@@ -27,8 +28,9 @@ from phong75.sim.design import BUILD
 
 TESTS = ("tests/test_modules.py", "tests/test_frames.py", "tests/test_configurations.py")
 
-#: (file, text of the line, reason): lines that no test can reach.
-_ELABORATED = "a function of constants: it runs when the design is elaborated, not in simulation"
+_ELABORATED = "a function of constants: evaluated during elaboration, not in simulation"
+
+#: (file, text of the line, reason): lines that no test can cover.
 WAIVERS: tuple[tuple[str, str, str], ...] = (
     ("constant_multiplier.v", "function integer count(input integer unused);", _ELABORATED),
     (
@@ -40,7 +42,7 @@ WAIVERS: tuple[tuple[str, str, str], ...] = (
 
 
 def waived(name: str, line: int) -> bool:
-    """Whether a line of rtl/`name` is on the list."""
+    """Whether line number `line` of the file `name` is in WAIVERS."""
     text = design.module_file(Path(name).stem).read_text().splitlines()[line - 1].strip()
     return any((name, text) == waiver[:2] for waiver in WAIVERS)
 
@@ -55,20 +57,20 @@ def main(
     recorded.check(record)
     folder = BUILD / "coverage"
     shutil.rmtree(folder, ignore_errors=True)
-    done = subprocess.run(
+    tests = subprocess.run(
         [sys.executable, "-m", "pytest", *TESTS, *(arguments or [])],
         cwd=design.PACKAGE,
         env=os.environ | {environment.COVERAGE: str(folder)},
     )
-    found = points(folder)
-    if not found:
+    counts = points(folder)
+    if not counts:
         raise InputError("no coverage was counted")
     table = Table(title="coverage of rtl/")
     for title in ("kind", "points", "covered", "share"):
         table.add_column(title, justify="right")
     summary, missing = {}, []
-    for kind in sorted({key[0] for key in found}):
-        of_kind = {key: count for key, count in found.items() if key[0] == kind}
+    for kind in sorted({key[0] for key in counts}):
+        of_kind = {key: count for key, count in counts.items() if key[0] == kind}
         if kind != "toggle":
             of_kind = {k: c for k, c in of_kind.items() if c or not waived(k[1], k[2])}
             missing += [key for key, count in of_kind.items() if not count]
@@ -78,10 +80,10 @@ def main(
             kind, str(len(of_kind)), str(covered), f"{100 * covered / len(of_kind):.2f} %"
         )
     console.show(table)
-    for kind, name, line, what in sorted(missing):
-        console.failure(f"not covered: {name}:{line} ({kind} {what})")
+    for kind, name, line, point in sorted(missing):
+        console.failure(f"not covered: {name}:{line} ({kind} {point})")
     (BUILD / "coverage.json").write_text(json.dumps(summary, indent=2) + "\n")
-    failed = bool(missing or done.returncode)
+    failed = bool(missing or tests.returncode)
     if record:
         percent = {k: round(100 * s["covered"] / s["points"], 2) for k, s in summary.items()}
         recorded.record(

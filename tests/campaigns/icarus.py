@@ -1,18 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""The module tests once more, in Icarus Verilog with its four states: `make icarus`.
+"""The module tests in Icarus Verilog, which simulates 0, 1, X and Z: `make icarus`.
 
-Exit code: 0; 1 if a test fails; 2 if Icarus is missing or refuses a bench.
+Exit code: 0; 1 if a test fails; 2 if Icarus Verilog is missing or rejects a bench.
 """
 
 from __future__ import annotations
 
 import logging
 import os
-import re
 import subprocess
 import sys
 import time
-import xml.etree.ElementTree as ET
 from typing import Annotated
 
 import typer
@@ -23,30 +21,28 @@ from phong75.scripts.main import single
 from phong75.sim import environment
 from phong75.sim.design import BUILD
 from phong75.sim.icarus import THIN, IcarusBench
+from phong75.sim.results import read_results
 from tests.modules.benches import NAMES, module_bench
 
 SEED = 75
 
 
 def run(name: str) -> tuple[int, list[str]]:
-    """Run bench `name`: number of its tests; what is wrong, a line each. Raises BuildError."""
+    """Run the bench `name`; returns the number of its tests and the failures, one message each.
+
+    Raises BuildError.
+    """
     bench = module_bench(name)
     folder = BUILD / "icarus" / "run" / name
     begin = time.monotonic()
-    results = IcarusBench(bench.top, bench.config, bench.sources).run(
+    IcarusBench(bench.top, bench.config, bench.sources).run(
         bench.tests, folder, seed=SEED, extra_env=bench.environment(folder, SEED)
     )
-    cases = ET.parse(results).getroot().findall(".//testcase")
-    failed = [case for case in cases if case.find("failure") is not None]
-    complaints = [f"{name}: {case.get('name')}" for case in failed]
-    if failed:
-        log = (folder / "sim.log").read_text()
-        complaints += re.findall(r"(?:AssertionError|ValueError): .*", log)
-    if not cases:
-        complaints.append(f"{name}: no test ran ({folder / 'sim.log'})")
+    results = read_results(folder)
     seconds = time.monotonic() - begin
-    console.say(f"{name}: {len(cases)} tests, {len(failed)} failed, {seconds:.0f} s")
-    return len(cases), complaints
+    verdict = "failed" if results.failures else "passed"
+    console.say(f"{name}: {len(results.tests)} tests {verdict}, {seconds:.0f} s")
+    return len(results.tests), [f"{name}: {failure}" for failure in results.failures]
 
 
 def main(
@@ -65,12 +61,12 @@ def main(
     total, failures = 0, []
     for name in benches or NAMES:
         console.phase(name)
-        count, complaints = run(name)
+        count, messages = run(name)
         total += count
-        failures += complaints
+        failures += messages
     for line in failures:
         console.failure(line)
-    console.say(f"{total} tests in four states, {len(failures)} complaints")
+    console.say(f"{total} tests in Icarus Verilog, {len(failures)} failures")
     if record:
         version = subprocess.run(["iverilog", "-V"], text=True, capture_output=True).stdout
         recorded.record(

@@ -65,8 +65,9 @@ BENCH_SECONDS = 60
 #: Limit of a worker's memory, bytes: for some mutants Verilator unrolls an endless loop.
 MEMORY = 4 << 30
 
-#: Why a mutant is killed that Verilator or the compiler rejects.
-REFUSED = "does not build"
+#: Reasons of mutants that are killed without a simulation: Verilator or the compiler rejects the
+#: bench; or all benches accept the mutant, but Verilator's lint has a warning.
+REFUSED, LINT = "does not build", "lint: warning"
 
 #: Results of the benches on the design itself: one JSON file per bench, [hash, reason].
 DESIGN_RESULTS = FOLDER / "design"
@@ -317,7 +318,7 @@ def killed_by(mutant: Mutant) -> tuple[str, bool]:
             order.remove(name)
             order.insert(0, name)
             return f"{name}: {reason}", differs
-    return ("lint: complains" if lint_message(rtl) else ""), differs
+    return (LINT if lint_message(rtl) else ""), differs
 
 
 def lint_message(rtl: Path) -> str:
@@ -354,25 +355,31 @@ def _outcomes() -> dict[str, str]:
 
 
 def _record(everything: list[Mutant], survivors: list[Mutant], part: str) -> None:
-    """Put what was found into the record, file by file, where all mutants of a file have been
-    tried; the other files' results stay. A run with `survivors`, or a `part` of one, is refused."""
+    """Record the counts of each file and kind of which all mutants have been run.
+
+    The counts of other files stay. `recorded.record` refuses a run with `survivors` and a partial
+    run (`part` says why it is partial).
+    """
     known = explained()
-    found = recorded.figures("mutate").get("files", {})
-    found = {name: of for name, of in found.items() if name in {file.name for file in _files()}}
+    names = {file.name for file in _files()}
+    files = recorded.figures("mutate").get("files", {})
+    files = {name: kinds for name, kinds in files.items() if name in names}
     outcomes = _outcomes()
     for file, kind in sorted({(m.file, m.kind) for m in everything}):
-        all_of = [m for m in everything if (m.file, m.kind) == (file, kind)]
-        ours = [outcomes.get(m.name) for m in all_of if m.key not in known]
-        if None in ours:
+        group = [m for m in everything if (m.file, m.kind) == (file, kind)]
+        reasons = [outcomes.get(m.name) for m in group if m.key not in known]
+        if None in reasons:
             continue
-        built = sum(why.endswith((REFUSED, "complains")) for why in ours)
-        found.setdefault(file, {})[kind] = {
-            "mutants": len(all_of), "refused": built, "killed": len(ours) - built - ours.count(""),
-            "survived": ours.count(""), "equivalent": len(all_of) - len(ours),
+        refused = sum(reason.endswith((REFUSED, LINT)) for reason in reasons)
+        survived = reasons.count("")
+        files.setdefault(file, {})[kind] = {
+            "mutants": len(group), "refused": refused,
+            "killed": len(reasons) - refused - survived, "survived": survived,
+            "equivalent": len(group) - len(reasons),
             "date": datetime.date.today().isoformat(), "commit": recorded.commit(),
         }  # fmt: skip
     recorded.record(
-        "mutate", "make mutate", ("verilator", "cocotb"), {"files": found},
+        "mutate", "make mutate", ("verilator", "cocotb"), {"files": files},
         failed=bool(survivors), part=part,
     )  # fmt: skip
 
@@ -388,9 +395,12 @@ def _campaign(chosen: list[Mutant], jobs: int) -> list[Mutant]:
     Raises RejectedDesignError, BuildError.
     """
     survivors: list[Mutant] = []
+    if not chosen:
+        return survivors
     tried = _outcomes()
     shutil.rmtree(DESIGN_RESULTS, ignore_errors=True)
-    # Before the workers start, so that all of them have the results.
+    # Both before the workers start, which all need them.
+    console.phase("compiling Verilator's runtime and elaborating all benches (once)")
     build.runtime()
     contents()
     begin = time.monotonic()
@@ -413,8 +423,11 @@ def _campaign(chosen: list[Mutant], jobs: int) -> list[Mutant]:
 
 
 def _chosen(files: list[str], kind: str | None) -> tuple[list[Mutant], list[Mutant]]:
-    """All mutants of `files` (names of modules; all if empty) and of `kind` (both if None); and
-    of these the ones that are not explained. Raises InputError."""
+    """All mutants of `files` and `kind`, and those among them that are not listed as equivalent.
+
+    files: names of modules or headers, empty for all. kind: one of KINDS, None for both. Raises
+    InputError.
+    """
     if kind not in (None, *KINDS):
         raise InputError(f"--kind is `{kind}`, not one of {', '.join(KINDS)}")
     by_name = {path.stem: path for path in sorted(_files(), key=lambda file: file.name)}
@@ -429,7 +442,7 @@ def _chosen(files: list[str], kind: str | None) -> tuple[list[Mutant], list[Muta
     ]
     if not (files or kind):
         for key in sorted(set(known) - {m.key for m in everything}):
-            console.note(f"explained, but no mutant: {key}")
+            console.note(f"in {EXPLAINED.name}, but not a mutant: {key}")
     return everything, [m for m in everything if m.key not in known]
 
 
@@ -466,7 +479,7 @@ def main(
     if show:
         for m in chosen:
             console.say(f"{m.file}:{m.line}: {m.old} -> {m.new}: {m.key.partition(': ')[2]}")
-        console.say(f"{len(chosen)} mutants, {len(everything) - len(chosen)} left out")
+        console.say(f"{len(chosen)} mutants, {len(everything) - len(chosen)} not chosen")
         return console.GOOD
 
     os.environ["COCOTB_MAX_FAILURES"] = "1"
@@ -478,7 +491,7 @@ def main(
         _record(everything, survivors, "only a sample was tried" if sample is not None else "")
     console.say(
         f"{len(chosen)} mutants, {len(chosen) - len(survivors)} killed, "
-        f"{len(survivors)} survived; {len(everything) - len(chosen)} left out or explained"
+        f"{len(survivors)} survived; {len(everything) - len(chosen)} equivalent or not chosen"
     )
     return console.FAILED if survivors else console.GOOD
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Random scenes, each on the build that is pruned to it: `make prune-random SCENES=200`.
+"""Random scenes, each on the build that is pruned to the scene: `make prune-random SCENES=200`.
 
-Exit code: 0; 1 if a pixel, a count or the latency is not the full design's; 2 if the number is
-none.
+Exit code: 0; 1 if a pixel, a counter or the latency differs from what is expected; 2 if the command
+line is wrong.
 """
 
 from __future__ import annotations
@@ -27,17 +27,21 @@ MOST = 100_000
 
 
 def attempt(seed: int) -> tuple[str, int, tuple]:
-    """What is wrong with random scene `seed` ("": nothing), its pixels, the features left out."""
-    found = random_configuration_test(seed)
-    bench = found.bench()
-    frame = found.jobs[0].frame
+    """Run random scene `seed`; returns (failure, pixels, configuration).
+
+    failure: a message, "" if the scene passes. pixels: number of pixels. configuration: all fields
+    of the build, to count different builds.
+    """
+    test = random_configuration_test(seed)
+    bench = test.bench()
+    frame = test.jobs[0].frame
     try:
-        said = found.model_failure() or found.failure(bench)
+        failure = test.model_failure() or test.failure(bench)
     except (BuildError, SimulationError) as error:
-        said = str(error).splitlines()[0]
-    shutil.rmtree(bench.folder, ignore_errors=True)  # nobody will run this build again
-    left = {**found.config.as_dict(), "name": ""}.items()
-    return said, int(frame.spans["length"].sum()), tuple(map(str, left))
+        failure = str(error).splitlines()[0]
+    shutil.rmtree(bench.folder, ignore_errors=True)  # hardly any build is needed twice
+    fields = {**test.config.as_dict(), "name": ""}.items()
+    return failure, int(frame.spans["length"].sum()), tuple(map(str, fields))
 
 
 def main(
@@ -56,25 +60,29 @@ def main(
     recorded.check(record)
     if scenes and not runtime_built():
         console.phase("compiling Verilator's runtime (once)")
-    runtime()  # once, before all need it
+    runtime()  # before the workers start, which all need it
     seeds = range(SEED, SEED + scenes)
     with multiprocessing.get_context("spawn").Pool(os.cpu_count()) as pool:
-        tried = track(
-            pool.imap(attempt, seeds), "random scenes", len(seeds), console=Console(stderr=True)
+        results = list(
+            track(
+                pool.imap(attempt, seeds), "random scenes", len(seeds), console=Console(stderr=True)
+            )
         )
-        found = list(tried)
-    wrong = [f"seed {s}: {text}" for s, (text, *_) in zip(seeds, found, strict=True) if text]
-    for line in wrong:
-        console.failure(line)
-    pixels, builds = sum(p for _, p, _ in found), len({build for *_, build in found})
-    console.say(f"{len(found)} scenes, {builds} builds, {pixels} pixels, {len(wrong)} complaints")
+    failures = [f"seed {s}: {text}" for s, (text, *_) in zip(seeds, results, strict=True) if text]
+    for message in failures:
+        console.failure(message)
+    pixels, builds = sum(p for _, p, _ in results), len({build for *_, build in results})
+    console.say(
+        f"{len(results)} scenes, {builds} builds, {pixels} pixels, {len(failures)} failures"
+    )
     if record:
         recorded.record(
             "prune-random", "make prune-random", ("verilator", "numpy"),
-            {"scenes": len(found), "builds": builds, "pixels": pixels, "complaints": len(wrong)},
-            {"scenes": scenes}, failed=bool(wrong),
+            {"scenes": len(results), "builds": builds, "pixels": pixels,
+             "complaints": len(failures)},
+            {"scenes": scenes}, failed=bool(failures),
         )  # fmt: skip
-    return console.FAILED if wrong else console.GOOD
+    return console.FAILED if failures else console.GOOD
 
 
 if __name__ == "__main__":
