@@ -151,8 +151,10 @@ def cost_chart(rows: list[dict], path: Path) -> None:
     Writes `path`.png and .svg.
     """
     columns = [("multipliers of at most 18 x 18 bits", lambda row: row["multipliers"])]
-    if all(row["lut_sites"] is not None for row in rows):
-        columns.append(("LUT sites (nextpnr)", lambda row: row["lut_sites"]))
+    for name, title in (("lut_sites", "LUT sites"), ("lut_cells", "LUT cells (Yosys)")):
+        if all(row[name] is not None for row in rows):
+            columns.append((title, lambda row, name=name: row[name]))
+            break
     _figure(rows, columns, "Error against hardware (ECP5)", path)
 
 

@@ -61,7 +61,8 @@ COLOURS = (
 #: Columns of the sweep's tables that can be axes, and their names.
 COSTS = {
     "frame_us": "run time of all frames, µs", "cycles": "cycles of all frames",
-    "dsp": "multipliers", "lut_sites": "LUT sites", "ff": "flip-flops",
+    "dsp": "multipliers", "lut_sites": "LUT sites", "lut_cells": "LUT cells (Yosys)",
+    "ff": "flip-flops",
     "simulate_s": "host: seconds of RTL simulation", "model_s": "host: seconds of the model",
 }  # fmt: skip
 ERRORS = {
@@ -308,7 +309,10 @@ def _hover(row: dict) -> str:
     ]  # fmt: skip
     if row.get("correctly_rounded") is not None:
         lines.append(f"{100 * row['correctly_rounded']:.3f} % correctly rounded")
-    units = {"dsp": "multipliers", "lut_sites": "LUT sites", "ff": "FF", "ebr": "block RAMs"}
+    units = {
+        "dsp": "multipliers", "lut_sites": "LUT sites", "lut_cells": "LUT cells (Yosys)",
+        "ff": "FF", "ebr": "block RAMs",
+    }  # fmt: skip
     hardware = [f"{row[n]:.0f} {unit}" for n, unit in units.items() if row.get(n)]
     if hardware:
         lines.append(", ".join(hardware))
@@ -339,6 +343,8 @@ def precision_plots(rows: list[dict]) -> dict[str, dict]:
     methods = list(dict.fromkeys(row["method"] for row in rows))
     plots = {}
     for cost, cost_title in COSTS.items():
+        if cost == "lut_sites" and any(r.get("lut_cells") and not r.get(cost) for r in rows):
+            continue  # of some, only Yosys's count was kept
         for error, error_title in ERRORS.items():
             at = [(row, row.get(cost), _error(row, error)) for row in rows]
             at = [(row, x, y) for row, x, y in at if x and y]

@@ -145,7 +145,7 @@ def test_the_numbers_are_those_of_the_runs(html, build):
 def test_what_is_missing_names_its_command(tmp_path, monkeypatch):
     monkeypatch.setattr(recorded, "FOLDER", tmp_path)
     html = report.page(tmp_path)
-    for target in ("run", "results", "sweep", "tessellation", "stability", "synth"):
+    for target in ("run", "scenes", "sweep", "tessellation", "stability", "synth"):
         command = f"make {target}"
         assert f"{target}:" in (PACKAGE / "Makefile").read_text()
         assert f"Not run yet: <code>{command}" in html, command
@@ -198,8 +198,7 @@ def test_the_page_of_all_scenes_weighs_less_than_5_mb(build, tmp_path):
     """All bundled scenes at their own size, by every technique, and the charts of the studies."""
     shutil.copytree(build, tmp_path, dirs_exist_ok=True)
     for name in bundled_scenes():
-        out = tmp_path / name
-        assert run_scene.main([f"--scene={name}", f"--out={out}"], simulate=without_rtl) == 0
+        run_scene.run(run_scene.request(name, out=tmp_path / name), without_rtl, Steps())
         for technique in ("gouraud", "flat"):
             config = TECHNIQUES[technique]
             frame = front_end(load_scene(name, None, config), config).frame
