@@ -7,7 +7,6 @@ Each chart is written as PNG and as SVG. The same numbers give the same files.
 from __future__ import annotations
 
 from collections.abc import Callable
-from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -151,12 +150,9 @@ def cost_chart(rows: list[dict], path: Path) -> None:
 
     Writes `path`.png and .svg.
     """
-    columns: list[tuple[str, Callable[..., Any]]] = [
-        ("multipliers of at most 18 x 18 bits", itemgetter("multipliers"))
-    ]
-    counts = (("LUT sites", "lut_sites"), ("LUT cells (Yosys)", "lut_cells"))
-    known = [(title, key) for title, key in counts if all(row[key] is not None for row in rows)]
-    columns += [(title, itemgetter(key)) for title, key in known[:1]]
+    columns = [("multipliers of at most 18 x 18 bits", lambda row: row["multipliers"])]
+    if all(row["lut_cells"] is not None for row in rows):
+        columns.append(("LUT cells (Yosys)", lambda row: row["lut_cells"]))
     _figure(rows, columns, "Error against hardware (ECP5)", path)
 
 

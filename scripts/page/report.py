@@ -61,8 +61,7 @@ COLOURS = (
 #: Columns of the sweep's tables that can be axes, and their names.
 COSTS = {
     "frame_us": "run time of all frames, µs", "cycles": "cycles of all frames",
-    "dsp": "multipliers", "lut_sites": "LUT sites", "lut_cells": "LUT cells (Yosys)",
-    "ff": "flip-flops",
+    "dsp": "multipliers", "lut_cells": "LUT cells (Yosys)", "ff": "flip-flops",
     "simulate_s": "host: seconds of RTL simulation", "model_s": "host: seconds of the model",
 }  # fmt: skip
 ERRORS = {
@@ -118,7 +117,7 @@ class SceneResult:
     views: list[View]
     error_map: str
     failures: list[str]
-    budget: list[error_budget.Row] = field(default_factory=list)
+    budget: list[error_budget.BudgetRow] = field(default_factory=list)
     features: dict[str, FeatureRow] = field(default_factory=dict)
 
     @property
@@ -309,10 +308,7 @@ def _hover(row: dict) -> str:
     ]  # fmt: skip
     if row.get("correctly_rounded") is not None:
         lines.append(f"{100 * row['correctly_rounded']:.3f} % correctly rounded")
-    units = {
-        "dsp": "multipliers", "lut_sites": "LUT sites", "lut_cells": "LUT cells (Yosys)",
-        "ff": "FF", "ebr": "block RAMs",
-    }  # fmt: skip
+    units = {"dsp": "multipliers", "lut_sites": "LUT sites", "ff": "FF", "ebr": "block RAMs"}
     hardware = [f"{row[n]:.0f} {unit}" for n, unit in units.items() if row.get(n)]
     if hardware:
         lines.append(", ".join(hardware))
@@ -343,8 +339,6 @@ def precision_plots(rows: list[dict]) -> dict[str, dict]:
     methods = list(dict.fromkeys(row["method"] for row in rows))
     plots = {}
     for cost, cost_title in COSTS.items():
-        if cost == "lut_sites" and any(r.get("lut_cells") and not r.get(cost) for r in rows):
-            continue  # of some, only Yosys's count was kept
         for error, error_title in ERRORS.items():
             at = [(row, row.get(cost), _error(row, error)) for row in rows]
             at = [(row, x, y) for row, x, y in at if x and y]

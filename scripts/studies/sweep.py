@@ -39,8 +39,8 @@ COLUMNS = (
     "name", "family", "method", "label", "cycles", "clock_mhz", "clock_source", "frame_us",
     "max_lsb", "rms_lsb", "p999_lsb", "mean_lsb", "correctly_rounded", "psnr_db", "simulate_s",
     "model_s", "dsp", "lut_sites", "lut_cells", "ff", "ebr", "pareto", "multipliers",
-    "latency_cycles", "pixels", "mismatches", "port_max_lsb", "bound_lsb", "pareto_hardware",
-    "longest_path",
+    "latency_cycles", "pixels",
+    "mismatches", "port_max_lsb", "bound_lsb", "pareto_hardware", "longest_path",
 )  # fmt: skip
 
 
@@ -79,6 +79,7 @@ def hardware(config: Config, area: bool, route: bool) -> dict:
         used, clock = ecp5.synthesize(config, folder)["resources"], stated
     else:
         return stated | dict.fromkeys(clocks.SIZES)
+    used = used | {"lut_cells": ecp5.lut_cells(used)}
     return {name: used[name] for name in clocks.SIZES} | clock
 
 

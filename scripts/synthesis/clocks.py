@@ -18,9 +18,8 @@ from phong75.scripts.synthesis import ecp5
 NAME = "clocks"
 GRADE, SEED = 6, 1
 SOURCE = f"nextpnr, grade {GRADE}, seed {SEED}"
-#: What the pipeline takes of the chip. Clocks of before LUT sites were counted have LUT cells only.
-SIZES = ("dsp", "lut_sites", "lut_cells", "ff", "ebr")
 #: What is kept of a configuration besides key, date and commit.
+SIZES = ("dsp", "lut_sites", "lut_cells", "ff", "ebr")
 FIGURES = ("clock_mhz", *SIZES, "longest_path")
 
 

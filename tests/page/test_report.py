@@ -43,7 +43,7 @@ def point(method, label, cycles, rms, **more):
         "clock_mhz": 200, "clock_source": "stated", "frame_us": cycles / 200, "max_lsb": 2 * rms,
         "rms_lsb": rms, "p999_lsb": 1.5 * rms, "mean_lsb": rms / 2,
         "correctly_rounded": 1 - rms / 9, "psnr_db": 50, "simulate_s": 1, "model_s": 0.5,
-        "dsp": "", "lut_sites": "", "ff": "", "ebr": "", "pareto": 1,
+        "dsp": "", "lut_cells": "", "ff": "", "ebr": "", "pareto": 1,
     } | more  # fmt: skip
 
 
@@ -198,7 +198,8 @@ def test_the_page_of_all_scenes_weighs_less_than_5_mb(build, tmp_path):
     """All bundled scenes at their own size, by every technique, and the charts of the studies."""
     shutil.copytree(build, tmp_path, dirs_exist_ok=True)
     for name in bundled_scenes():
-        run_scene.run(run_scene.request(name, out=tmp_path / name), without_rtl, Steps())
+        out = tmp_path / name
+        run_scene.run(run_scene.request(name, out=out), without_rtl, Steps())
         for technique in ("gouraud", "flat"):
             config = TECHNIQUES[technique]
             frame = front_end(load_scene(name, None, config), config).frame
