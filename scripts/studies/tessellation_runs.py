@@ -187,7 +187,7 @@ def figures(rows: list[dict], found: dict) -> dict:
 
 
 def main(record: bool) -> int:
-    """Measure all, print it, and record what the README shows; returns the exit code.
+    """Measure all, print it, and record the figures; returns the exit code.
 
     Raises as `measure`.
     """

