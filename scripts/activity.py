@@ -25,7 +25,7 @@ from phong75.sim import design
 from phong75.sim.build import Bench
 from phong75.sim.coverage import points
 from phong75.sim.design import BUILD
-from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 
 
 def registers() -> dict[str, set[str]]:
@@ -42,7 +42,7 @@ def toggles_per_pixel(frame: Frame, config: Config, folder: Path) -> tuple[int, 
     `folder`, which is emptied first."""
     shutil.rmtree(folder, ignore_errors=True)
     bench = Bench("frame_bench", config, coverage=folder)
-    pixels = len(simulate_jobs([Job(frame)], config, bench)[0].pixels.x)
+    pixels = len(simulate_jobs([SimJob(frame)], config, bench)[0].pixels.x)
     declared = registers()
     toggles = sum(
         count

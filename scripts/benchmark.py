@@ -33,7 +33,7 @@ from phong75.model.twin.core.span_walker import BLOCK, span_walker
 from phong75.scripts import console, recorded
 from phong75.sim.build import Bench
 from phong75.sim.design import BUILD
-from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 
 ROUNDS = 5
 SCENE, SIZE = "teapot", (640, 480)
@@ -75,7 +75,7 @@ def bare(bench: Bench, file: Path) -> float:
 
 def under_cocotb(bench: Bench, frame) -> float:
     """Clocks a second under cocotb on `frame`, from its start until cocotb has the result."""
-    result = simulate_jobs([Job(frame)], CONFIG, bench)[0]
+    result = simulate_jobs([SimJob(frame)], CONFIG, bench)[0]
     return result.cycles / result.simulate_s
 
 

@@ -25,7 +25,7 @@ from phong75.sim import design
 from phong75.sim.build import Bench, run_tool
 from phong75.sim.design import BUILD
 from phong75.sim.frame.corner_cases import run_cases
-from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 
 _MODELS = ("common_sim.vh", "ccu2c_sim.vh")
 SCENES = ("teapot", "still_life")
@@ -83,7 +83,7 @@ def main(record: bool) -> int:
     around = bench()
     around.make(console.phase)
     console.phase("simulating whole frames")
-    results = simulate_jobs([Job(frame) for frame in frames], DEFAULT, around)
+    results = simulate_jobs([SimJob(frame) for frame in frames], DEFAULT, around)
     console.phase("simulating stiff and extreme cases")
     rows = run_cases(corner_cases.cases(), around)
     wrong = total = 0

@@ -44,7 +44,7 @@ from phong75.scripts.synthesis import ecp5
 from phong75.sim.build import Bench
 from phong75.sim.design import BUILD
 from phong75.sim.elaborate import instances
-from phong75.sim.frame.run_frame import Job, SimulationError, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, SimulationError, simulate_jobs
 from phong75.sim.latency import latencies
 
 ROUNDS = 9  # simulations of each build; the median counts
@@ -52,7 +52,7 @@ CLOCKS = 5_000_000  # at least, a simulation: more than a second of the full des
 
 
 @dataclass
-class Case:
+class PrunedBuild:
     """A row of the table: the build `config`, a `frame` for it, and what the full design is given
     for the same picture; `same`: whether the pixels must be the same."""
 
@@ -72,21 +72,23 @@ def matte(frame: Frame, channels: int) -> Frame:
     return dataclasses.replace(frame, two_sided=False, materials=table)
 
 
-def cases() -> list[Case]:
+def cases() -> list[PrunedBuild]:
     """Every bundled scene, then the configurations by hand on the teapot."""
     out = []
     for scene in bundled_scenes():
         frame = front_end(load_scene(scene)).frame
         config = dataclasses.replace(prune(frame)[0], name=f"prune-{scene}")
-        out.append(Case(scene, config, frame, frame))
+        out.append(PrunedBuild(scene, config, frame, frame))
     teapot = load_scene("teapot")
     frame = front_end(teapot).frame
     for name, config in BY_HAND.items():
         if config.technique != "phong":
-            out.append(Case(name, config, front_end(teapot, config).frame, frame, same=False))
+            out.append(
+                PrunedBuild(name, config, front_end(teapot, config).frame, frame, same=False)
+            )
         else:
             own = frame if config.specular else matte(frame, config.channels)
-            out.append(Case(name, config, own, own))
+            out.append(PrunedBuild(name, config, own, own))
     return out
 
 
@@ -103,7 +105,7 @@ def left_out(config: Config) -> dict:
 def pixels_of(frame: Frame, config: Config) -> twin.Pixels:
     """Pixels of `frame` as simulated. Raises SimulationError where a span or a register write is
     not supported."""
-    result = simulate_jobs([Job(frame)], config, Bench("frame_bench", config))[0]
+    result = simulate_jobs([SimJob(frame)], config, Bench("frame_bench", config))[0]
     if result.unsupported or not result.complete:
         raise SimulationError(f"{config.name}: the frame is not supported or did not end")
     return result.pixels
@@ -161,7 +163,7 @@ def resources(config: Config, seeds: int, count_gates: bool, steps: Steps) -> di
     }  # fmt: skip
 
 
-def measure(case: Case, seeds: int, count_gates: bool, steps: Steps) -> dict:
+def measure(case: PrunedBuild, seeds: int, count_gates: bool, steps: Steps) -> dict:
     """The figures of `case`, each with that of the full design behind it."""
     builds = {"pruned": (case.config, case.frame), "full": (DEFAULT, case.full)}
     found = {}

@@ -18,7 +18,7 @@ from phong75.model.scene_to_frame import front_end
 from phong75.scripts import console, recorded
 from phong75.scripts.docs import tables
 from phong75.sim.design import BUILD
-from phong75.sim.frame.run_frame import Job, SimResult, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, SimResult, simulate_jobs
 
 #: Version of the layout of build/results.json.
 SCHEMA = 1
@@ -48,7 +48,7 @@ def measure(scene: str) -> list[Result]:
     """Run `scene` at SIZES, in one simulation."""
     frames = [front_end(load_scene(scene, size)).frame for size in SIZES]
     results = []
-    for frame, simulation in zip(frames, simulate_jobs([Job(f) for f in frames]), strict=True):
+    for frame, simulation in zip(frames, simulate_jobs([SimJob(f) for f in frames]), strict=True):
         compared = metrics.compare(twin.render(frame), simulation.pixels)
         error = metrics.error_metrics(simulation.pixels.rgb, reference.render(frame))
         results.append(

@@ -36,11 +36,11 @@ LONG_RUN = 1_000_000
 LARGE = ("still_life", (3840, 2160))
 
 
-def adversarial_cases() -> list[corner_cases.Case]:
+def adversarial_cases() -> list[corner_cases.CornerCase]:
     """The worst input of each family, as cases."""
     names = {(f.limit, f.steep): f.name for f in adversarial.FAMILIES}
     return [
-        corner_cases.Case(
+        corner_cases.CornerCase(
             f"worst input, {names[row['limit'], row['steep']]}",
             "the input with the largest error that the search has found",
             f"an error of {row['error_lsb']:.4f} LSB, as found, within its bound",
@@ -71,7 +71,9 @@ def scene_errors(cases, results) -> dict[adversarial.Family, float]:
     return worst
 
 
-def error_rows(scenes: dict[adversarial.Family, float], worst: list[simulated.Row]) -> list[dict]:
+def error_rows(
+    scenes: dict[adversarial.Family, float], worst: list[simulated.CornerCaseRow]
+) -> list[dict]:
     """A row a family: derived bound, worst of the bundled scenes, and the worst input found, as it
     came out of the RTL."""
     found = {(r["limit"], r["steep"]): w for r, w in zip(adversarial.kept(), worst, strict=True)}
@@ -165,7 +167,7 @@ def count(value: int | None) -> str:
     return "–" if value is None else f"{value:,}".replace(",", " ")
 
 
-def power_row(rows: list[dict]) -> simulated.Row:
+def power_row(rows: list[dict]) -> simulated.CornerCaseRow:
     """cos(s)**n alone, as a row of the table.
 
     Each error must be within its bound, and that at n = 20 at most a tenth of the published
@@ -178,7 +180,7 @@ def power_row(rows: list[dict]) -> simulated.Row:
     at_20 = next(r["max_error"] for r in rows if r["n"] == 20)
     if at_20 > adversarial.AMM_2012 / 10:
         failures.append(f"n = 20: {at_20:.3g} is more than a tenth of {adversarial.AMM_2012}")
-    return simulated.Row(
+    return simulated.CornerCaseRow(
         "cos(s)ⁿ alone", f"every code of 1 − cos(s), for {len(rows)} exponents",
         f"at n = 20 an error of {at_20:.2g}, at most a tenth of {adversarial.AMM_2012}; "
         "all within the derived bounds",

@@ -29,7 +29,7 @@ from phong75.sim import design
 from phong75.sim.build import Bench
 from phong75.sim.design import BUILD, PACKAGE
 from phong75.sim.frame import waveform
-from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 from phong75.sim.frame.waveform import Scope, Waveform
 
 TOP = "phong_pipeline"
@@ -169,7 +169,7 @@ def record(module: str, config: Config = CONFIG, folder: Path = BUILD / "waves")
     bench = Bench(waveform.BENCH, config, trace=True)
     with tempfile.TemporaryDirectory(dir=folder) as scratch:
         vcd = Path(scratch, "run.vcd")
-        simulate_jobs([Job(frame)], config, bench, waves=vcd, progress=console.phase)
+        simulate_jobs([SimJob(frame)], config, bench, waves=vcd, progress=console.phase)
         wave = waveform.split(vcd, folder / module, config)
     wave.path.with_suffix(".gtkw").write_text(save_file(wave, module, config))
     return wave

@@ -32,7 +32,7 @@ from phong75.model.studies.random_frames import random_frame
 from phong75.model.twin.core.register_map import unsupported_write, vanishing_exponent
 from phong75.model.twin.pruning.span_guard import span_guard
 from phong75.sim.build import Bench
-from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 from phong75.sim.latency import latencies
 
 SEED = 1975
@@ -215,7 +215,7 @@ def without(feature: str, frame: Frame):
 class ConfigurationTest:
     """Simulates `jobs` on the build `config` and compares with the twin."""
 
-    def __init__(self, config: Config, *jobs: Job, full: Config | None = None):
+    def __init__(self, config: Config, *jobs: SimJob, full: Config | None = None):
         """full: the configuration of the twin that gives the expected pixels of supported spans.
 
         By default that is `config` itself.
@@ -232,7 +232,7 @@ class ConfigurationTest:
         latency = 3 + latencies(self.config)["pixel"]
         return [self._expected(job, latency) for job in self.jobs]
 
-    def _expected(self, job: Job, latency: int) -> tuple:
+    def _expected(self, job: SimJob, latency: int) -> tuple:
         config, frame = self.config, job.frame
         words = writes(frame, config) if job.writes is None else job.writes
         unsupported = span_guard(frame.spans, config)
@@ -354,9 +354,9 @@ def _alone(feature: str) -> ConfigurationTest:
 def _of(frame: Frame, config: Config, full: Config = C) -> ConfigurationTest:
     """Jobs with `frame`, which `config` supports, and jobs with spans and writes it does not."""
     return ConfigurationTest(
-        config, Job(frame), Job(frame, idle=100, stall=64, seed=SEED),
-        Job(misfits(frame, SEED + 1)), Job(misfits(frame, SEED + 2), stall=100, idle=100),
-        Job(frame, writes=odd_writes(frame, config, SEED)), full=full,
+        config, SimJob(frame), SimJob(frame, idle=100, stall=64, seed=SEED),
+        SimJob(misfits(frame, SEED + 1)), SimJob(misfits(frame, SEED + 2), stall=100, idle=100),
+        SimJob(frame, writes=odd_writes(frame, config, SEED)), full=full,
     )  # fmt: skip
 
 
@@ -365,16 +365,16 @@ def _default() -> ConfigurationTest:
     for first, axes in enumerate(([1], [0, 1], [1, 2], [0, 2])):  # most leave the format
         overflowing.spans["step"][first::50, axes] = C.normal.max
     return ConfigurationTest(
-        C, Job(frame), Job(overflowing), Job(frame, idle=100, stall=64, seed=SEED),
-        Job(overflowing, stop_after=90, stall=255), Job(overflowing, reset_first=True),
-        Job(frame, writes=odd_writes(frame, C, SEED)),
+        C, SimJob(frame), SimJob(overflowing), SimJob(frame, idle=100, stall=64, seed=SEED),
+        SimJob(overflowing, stop_after=90, stall=255), SimJob(overflowing, reset_first=True),
+        SimJob(frame, writes=odd_writes(frame, C, SEED)),
     )  # fmt: skip
 
 
 def _hold() -> ConfigurationTest:
     config = dataclasses.replace(C, name="hold", hold_unlit=True)
     frame, single = plain(), dataclasses.replace(plain(), two_sided=False)
-    jobs = Job(frame), Job(single), Job(single, idle=100, stall=64, seed=SEED)
+    jobs = SimJob(frame), SimJob(single), SimJob(single, idle=100, stall=64, seed=SEED)
     return ConfigurationTest(config, *jobs, full=C)
 
 
@@ -408,8 +408,8 @@ def _intensities(technique: str, channels: int) -> ConfigurationTest:
         for word in ("start", "step"):
             frame.spans[word][:, 1:] = frame.spans[word][:, :1]
     return ConfigurationTest(
-        config, Job(frame), Job(frame, idle=100, stall=64, seed=SEED),
-        Job(frame, stop_after=40, stall=255), Job(frame, reset_first=True),
+        config, SimJob(frame), SimJob(frame, idle=100, stall=64, seed=SEED),
+        SimJob(frame, stop_after=40, stall=255), SimJob(frame, reset_first=True),
     )  # fmt: skip
 
 
@@ -441,7 +441,7 @@ def _method(name: str) -> ConfigurationTest:
     else:
         frames = [in_words_of(config, frame) for frame in (
             plain(), dataclasses.replace(plain(SEED + 1), two_sided=False))]  # fmt: skip
-    jobs = *map(Job, frames), Job(frames[0], idle=100, stall=64, seed=SEED)
+    jobs = *map(SimJob, frames), SimJob(frames[0], idle=100, stall=64, seed=SEED)
     return ConfigurationTest(config, *jobs)
 
 
@@ -499,4 +499,4 @@ def random_scene(seed: int) -> Frame:
 def random_configuration_test(seed: int) -> ConfigurationTest:
     """Random scene `seed` on the build that is pruned to the scene."""
     frame = random_scene(seed)
-    return ConfigurationTest(pruning.prune(frame)[0], Job(frame), full=C)
+    return ConfigurationTest(pruning.prune(frame)[0], SimJob(frame), full=C)

@@ -19,7 +19,7 @@ from phong75.scripts import lint
 from phong75.sim import build
 from tests.conftest import recorded_durations
 
-_MAIN = ("--ignore=tests/hardware", "--ignore=tests/page")
+_MAIN = ("--ignore=tests/hardware", "--ignore=tests/page", "--ignore=tests/docs")
 #: What each tier adds to pytest's arguments.
 TIERS: dict[str, tuple[str, ...]] = {"check": (*_MAIN, "-m", "fast"), "test": _MAIN, "all": ()}
 

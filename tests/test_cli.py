@@ -154,7 +154,7 @@ def test_a_span_file_instead_of_a_scene(start, scene, tmp_path):
     spans = tmp_path / "first" / "spans"
     code, _, lines = start("teapot", f"--spans={spans}", out=tmp_path / "second")
     assert (code, lines) == (0, [])
-    for name in ("frame.png", "reference.png", "spans"):  # error.png shows the scene's name
+    for name in ("frame.png", "reference.png", "spans"):  # error.png shows the name of the scene
         assert (tmp_path / "second" / name).read_bytes() == spans.with_name(name).read_bytes()
     report = json.loads((tmp_path / "second/report.json").read_text())
     assert report["input_error"] is None and report["scene"] == "spans"

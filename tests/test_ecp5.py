@@ -16,7 +16,7 @@ from phong75.scripts import main
 from phong75.scripts.synthesis import ecp5 as synthesis
 from phong75.sim import design
 from phong75.sim.build import Bench
-from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 from tests.modules.benches import module_bench
 from tests.test_modules import run
 
@@ -43,7 +43,7 @@ def test_same_as_the_behavioural_modules(ecp5, tmp_path):
 
 def test_whole_frame(ecp5):
     frame = front_end(load_scene("teapot", (160, 120))).frame
-    result = simulate_jobs([Job(frame)], bench=Bench("frame_bench", C, rtl=ecp5))[0]
+    result = simulate_jobs([SimJob(frame)], bench=Bench("frame_bench", C, rtl=ecp5))[0]
     want = render(frame, C)
     assert result.complete and np.array_equal(result.pixels.rgb, want.rgb)
     assert np.array_equal(result.pixels.x, want.x) and np.array_equal(result.pixels.y, want.y)

@@ -224,7 +224,7 @@ def test_sources_have_no_macro_no_include_and_only_prefixed_modules(exports):
             text = path.read_text()
             code = re.sub(r"//[^\n]*", "", text)
             assert set(re.findall(r"`\w+", code)) == {"`default_nettype"}, path
-            assert "PHONG_" not in text, path
+            assert "PHONG_" not in text and ".vh" not in text, path
             assert re.findall(r"\bmodule (\w+)", code) == [path.stem], path
             assert path.stem.startswith(prefix), path
             primitives = {"MULT18X18D", "DP16KD"}
@@ -355,6 +355,14 @@ def test_a_scene_that_the_configuration_cannot_show_is_refused(tmp_path):
     pruned = package.pruning.prune(frame, DEFAULT)[0]
     with pytest.raises(InputError, match="still_life needs what configuration .* leaves out"):
         export(pruned, tmp_path / "out")
+
+
+@pytest.mark.parametrize("name", ["paper", "diffuse", "diffuse_grey"])
+def test_configurations_by_hand_come_with_a_stimulus_that_they_can_show(name):
+    config = CONFIGURATIONS[name]
+    frame = package._frame(None, SMALL, config)
+    package._check(frame, config, name)
+    assert len(np.unique(twin.render(frame, config).rgb, axis=0)) > 50
 
 
 def test_what_the_checkout_keeps_of_the_default_configuration_is_current():

@@ -14,7 +14,7 @@ from phong75.scripts import recorded, scene_results
 from phong75.sim import design
 from phong75.sim.build import Bench
 from phong75.sim.frame.locate import locate
-from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 from tests.records import differences
 
 
@@ -45,14 +45,14 @@ def test_each_dot_is_shaded_once():
 def test_an_empty_frame_ends(tmp_path):
     frame = front_end(load_scene("sphere", (64, 48))).frame
     frame.spans = frame.spans[:0]
-    result = simulate_jobs([Job(frame)])[0]
+    result = simulate_jobs([SimJob(frame)])[0]
     assert result.complete and len(result.pixels.x) == 0
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_no_pixel_depends_on_what_registers_hold_at_power_up(seed):
     frame = front_end(load_scene("still_life")).frame
-    result = simulate_jobs([Job(frame)], power_up=seed)[0]
+    result = simulate_jobs([SimJob(frame)], power_up=seed)[0]
     assert metrics.compare(twin.render(frame), result.pixels).mismatches == 0, f"seed {seed}"
     assert result.stall_cycles == 0 and result.illegal_spans == 0
 
@@ -66,7 +66,7 @@ def test_a_broken_design_fails_and_is_located(tmp_path):
     assert broken != text
     (rtl / "core" / "versine_of_cross.v").write_text(broken)
     frame = front_end(load_scene("sphere", (64, 48))).frame
-    result = simulate_jobs([Job(frame)], C, Bench("frame_bench", C, rtl=rtl))[0]
+    result = simulate_jobs([SimJob(frame)], C, Bench("frame_bench", C, rtl=rtl))[0]
     comparison = metrics.compare(twin.render(frame), result.pixels)
     assert comparison.mismatches > 100
     said = locate(frame, comparison.first.index, rtl=rtl)

@@ -14,7 +14,7 @@ from phong75.model.spans import illegal_spans
 from phong75.model.studies.random_frames import random_frame
 from phong75.model.twin import render
 from phong75.sim.build import Bench
-from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 from phong75.sim.results import read_results
 from tests.modules.benches import NAMES, ModuleBench, module_bench
 
@@ -51,11 +51,11 @@ def test_whole_frames_in_all_regimes(technique):
     illegal = int(illegal_spans(frame, config).sum())
     pixels = int(frame.spans["length"].sum())
     chances = (0, 64, 200)
-    jobs = [Job(pixel)]
-    jobs += [Job(frame, idle=i, stall=s, seed=SEED + i + s) for i in chances for s in chances]
+    jobs = [SimJob(pixel)]
+    jobs += [SimJob(frame, idle=i, stall=s, seed=SEED + i + s) for i in chances for s in chances]
     # Stopped in the middle of a frame, with and without waiting pixels; then a whole frame.
     for clocks, stall in ((700, 0), (3001, 200), (90, 255)):
-        jobs += [Job(frame, stop_after=clocks, stall=stall), Job(frame, reset_first=True)]
+        jobs += [SimJob(frame, stop_after=clocks, stall=stall), SimJob(frame, reset_first=True)]
     results = simulate_jobs(jobs, config)
     overhead = results[0].cycles - 1
     for job, result in zip(jobs, results, strict=True):

@@ -27,7 +27,7 @@ from phong75.scripts import main, prune, recorded
 from phong75.scripts.docs import tables
 from phong75.sim.build import Bench
 from phong75.sim.elaborate import instances
-from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 from phong75.sim.latency import latencies
 from tests.configuration_tests import (
     ALONE,
@@ -132,7 +132,7 @@ def test_digits_of_constants():
 @pytest.mark.parametrize("scene", bundled_scenes())
 def test_bundled_scene(scene):
     frame = front_end(load_scene(scene, SIZE)).frame
-    jobs = Job(frame), Job(frame, idle=64, stall=100, seed=SEED)
+    jobs = SimJob(frame), SimJob(frame, idle=64, stall=100, seed=SEED)
     test = ConfigurationTest(pruning.prune(frame)[0], *jobs, full=C)
     assert test.model_failure() == test.failure() == ""
 
@@ -168,7 +168,7 @@ def test_another_method_is_pruned_in_rtl():
     frame = front_end(load_scene("teapot", SIZE)).frame
     config = dataclasses.replace(C, power_method="squaring", root_method="quadratic")
     pruned = pruning.prune(frame, config)[0]
-    result = simulate_jobs([Job(frame)], pruned, Bench("frame_bench", pruned, quick=True))[0]
+    result = simulate_jobs([SimJob(frame)], pruned, Bench("frame_bench", pruned, quick=True))[0]
     compared = metrics.compare(twin.render(frame, config), result.pixels)
     assert compared.mismatches == 0 and not result.unsupported, compared.first
 
@@ -216,7 +216,7 @@ def test_what_does_not_fit_is_flagged():
     }
     frames = [bare, *wanted.values(), bare]
     bench = Bench("frame_bench", config, quick=True)
-    results = simulate_jobs([Job(f) for f in frames], config, bench)
+    results = simulate_jobs([SimJob(f) for f in frames], config, bench)
     assert results[0].unsupported == results[-1].unsupported == 0
     assert not pruning.missing(bare, config)
     for (feature, frame), result in zip(wanted.items(), results[1:], strict=False):

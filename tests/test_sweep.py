@@ -156,7 +156,8 @@ def _rows():
             "correctly_rounded": 1 - k / 100, "simulate_s": 0.1, "model_s": 0.1, "pixels": 100,
             "multipliers": 19, "complete": True,
             "mismatches": 0, "port_max_lsb": 0.5, "bound_lsb": None,
-            "dsp": 19 - k if k % 2 else None, "lut_sites": 3000 if k % 2 else None,
+            "dsp": 19 - k if k % 2 else None, "lut_sites": None,
+            "lut_cells": 3000 if k % 2 else None,
             "ff": 10 if k % 2 else None, "ebr": 4 if k % 2 else None, "longest_path": None,
         })  # fmt: skip
     return rows
@@ -219,7 +220,8 @@ def test_the_chart_says_which_clocks_are_stated(monkeypatch, tmp_path):
 # -- clocks that are kept --------------------------------------------------------------------------
 
 ROUTED = {
-    "clock_mhz": 150.0, "dsp": 11, "lut_sites": 3000, "ff": 5000, "ebr": 4,
+    "clock_mhz": 150.0, "dsp": 11, "lut_sites": 3000, "lut_cells": 2900, "ff": 5000,
+    "ebr": 4,
     "longest_path": "ram to rom",
 }  # fmt: skip
 
@@ -246,24 +248,24 @@ def test_a_kept_clock_counts_where_its_key_is_todays(kept_clocks, monkeypatch):
     for name in ("fast_inverse_2", "fast_inverse_0"):  # of other sources, and none at all
         found = sweep.hardware(CONFIGS[name], area=False, route=False)
         assert found["clock_mhz"] == sweep.STATED_MHZ and found["clock_source"] == "stated"
-        assert found["dsp"] is found["lut_sites"] is found["ff"] is found["ebr"] is None
-    used = {"dsp": 12, "lut": 100, "lut_sites": 124, "ff": 7, "ebr": 3}
+        assert found["dsp"] is found["lut_cells"] is found["ff"] is found["ebr"] is None
+    used = {"dsp": 12, "lut": 100, "carry": 10, "lut_ram": 1, "lut_sites": 130, "ff": 7, "ebr": 3}
     monkeypatch.setattr(synthesis, "synthesize", lambda *_: {"resources": used})
     found = sweep.hardware(CONFIGS["fast_inverse_2"], area=True, route=False)
-    assert (found["clock_source"], found["dsp"], found["lut_sites"]) == ("stated", 12, 124)
+    assert (found["clock_source"], found["dsp"], found["lut_cells"]) == ("stated", 12, 124)
 
 
 def test_what_is_routed_anew_is_not_taken_from_the_record(kept_clocks, monkeypatch):
     clocks.keep("fast_inverse_1", ROUTED | {"clock_key": "fast_inverse_1 today"})
-    used = {"dsp": 12, "lut": 100, "lut_sites": 124, "ff": 7, "ebr": 3}
+    used = {"dsp": 12, "lut": 100, "carry": 10, "lut_ram": 1, "lut_sites": 130, "ff": 7, "ebr": 3}
     path = {"from": {"module": "ram"}, "to": {"module": "delay"}}
     report = {"resources": used, "fmax_mhz": {"median": 199.5}, "seeds": [{"critical_path": path}]}
     monkeypatch.setattr(synthesis, "run", lambda *_: report)
     found = sweep.hardware(CONFIGS["fast_inverse_1"], area=False, route=True)
     assert found == {
         "clock_mhz": 199.5, "clock_source": "nextpnr, grade 6, seed 1",
-        "clock_key": "fast_inverse_1 today", "dsp": 12, "lut_sites": 124, "ff": 7, "ebr": 3,
-        "longest_path": "ram to delay",
+        "clock_key": "fast_inverse_1 today", "dsp": 12, "lut_sites": 130, "lut_cells": 124,
+        "ff": 7, "ebr": 3, "longest_path": "ram to delay",
     }  # fmt: skip
 
 

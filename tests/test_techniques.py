@@ -21,7 +21,7 @@ from phong75.scripts import scene_results
 from phong75.sim import design
 from phong75.sim.build import Bench
 from phong75.sim.frame.locate import locate
-from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 from phong75.sim.latency import latencies
 from tests.test_error import frame_of
 
@@ -58,14 +58,14 @@ def check(made, config, results):
 def test_bundled_scene(scene, technique):
     config = TECHNIQUES[technique]
     made = [front_end(load_scene(scene, size), config) for size in scene_results.SIZES]
-    check(made, config, simulate_jobs([Job(front.frame) for front in made], config))
+    check(made, config, simulate_jobs([SimJob(front.frame) for front in made], config))
 
 
 @pytest.mark.parametrize("config", [grey(GOURAUD), grey(FLAT)], ids=lambda c: c.name)
 def test_grey_has_one_channel_and_the_same_pixels(config):
     colour = TECHNIQUES[config.technique]
     made = front_end(grey_scene("still_life", (320, 240)), colour)
-    result = simulate_jobs([Job(made.frame)], config)[0]
+    result = simulate_jobs([SimJob(made.frame)], config)[0]
     check([made], config, [result])
     assert metrics.compare(twin.render(made.frame, colour), result.pixels).mismatches == 0
     assert pruning.prune(made.frame, colour)[0].channels == 1
@@ -163,6 +163,6 @@ def test_a_broken_design_fails_and_is_located(tmp_path, module, old, new, says):
     design.module_file(module, rtl).write_text(text.replace(old, new))
     frame = front_end(load_scene("still_life", (160, 120)), GOURAUD).frame
     frame.spans["start"][::7] += C.normal.one // 2  # some above 1
-    result = simulate_jobs([Job(frame)], GOURAUD, Bench("frame_bench", GOURAUD, rtl=rtl))[0]
+    result = simulate_jobs([SimJob(frame)], GOURAUD, Bench("frame_bench", GOURAUD, rtl=rtl))[0]
     first = metrics.compare(twin.render(frame, GOURAUD), result.pixels).first
     assert says in locate(frame, first.index, GOURAUD, rtl)

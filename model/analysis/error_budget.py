@@ -23,7 +23,7 @@ from phong75.model.quadratic_spans import MARGIN_BITS
 
 
 @dataclass(frozen=True)
-class Row:
+class BudgetRow:
     """One line of the budget: the stage, the bound and its reason."""
 
     stage: str
@@ -322,7 +322,7 @@ def weight(points: Ints, config: Config, square: float = 0.0) -> float:
     return steepest * cosine(config, square) + _round(config.weight)
 
 
-def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
+def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[BudgetRow]:
     """The budget of one `material` (index) of `frame`; the last row bounds |code - 255 S| in LSB.
 
     S is eq. (3) at the pixel; for Gouraud and flat shading S is the interpolated intensity. For
@@ -330,9 +330,14 @@ def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
     """
     white = (1 << config.colour_bits) - 1
     if config.technique != "phong":
-        cut = Row("cut of S", config.intensity.lsb, "interpolation is exact, S is truncated once")
+        cut = BudgetRow(
+            "cut of S", config.intensity.lsb, "interpolation is exact, S is truncated once"
+        )
         total = white * cut.bound + 0.5
-        return [cut, Row("code", total, f"LSB: {white} times the cut, and the final rounding")]
+        return [
+            cut,
+            BudgetRow("code", total, f"LSB: {white} times the cut, and the final rounding"),
+        ]
     table = frame.materials
     n = float(config.exponent.real(table.exponent[material]))
     diffuse = float(config.coefficient.real(table.diffuse[material]).max())
@@ -344,10 +349,12 @@ def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
             raise ValueError("the interpolated squares have no bound")
         square = bound
         parts = [
-            Row("squares", square, "interpolated, against |N|^2"),
-            Row("normalizer: length", root_of_square(square, config), "1/sqrt of |N|^2, relative"),
-            Row("cos(i)", cosine(config, square), "Zn aligned, length, rounding"),
-            Row(
+            BudgetRow("squares", square, "interpolated, against |N|^2"),
+            BudgetRow(
+                "normalizer: length", root_of_square(square, config), "1/sqrt of |N|^2, relative"
+            ),
+            BudgetRow("cos(i)", cosine(config, square), "Zn aligned, length, rounding"),
+            BudgetRow(
                 "1 - cos(s)",
                 float(quadratic_versine(1.0, config, square)),
                 "the largest, at cos(s) = 0",
@@ -355,10 +362,12 @@ def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
         ]
     else:
         parts = [
-            Row("normalizer: direction", direction(config), "mantissas of the normal, radians"),
-            Row("normalizer: length", length(config), "1/sqrt and its operand, relative"),
-            Row("cos(i)", cosine(config), "direction, length, rounding"),
-            Row(
+            BudgetRow(
+                "normalizer: direction", direction(config), "mantissas of the normal, radians"
+            ),
+            BudgetRow("normalizer: length", length(config), "1/sqrt and its operand, relative"),
+            BudgetRow("cos(i)", cosine(config), "direction, length, rounding"),
+            BudgetRow(
                 "w",
                 half_vector_cross(frame.half_vector, config)[1],
                 "direction, rounding; absolute part",
@@ -366,7 +375,7 @@ def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
         ]
     method = {"tables": "log and exp tables", "squaring": "repeated squaring"}
     parts.append(
-        Row(
+        BudgetRow(
             "specular power",
             specular_power(n, config),
             f"{method.get(config.power_method, config.power_method)}, n = {n:g}",
@@ -378,14 +387,18 @@ def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[Row]:
     else:
         specular = weight_error = 0.0
     parts += [
-        Row("diffuse term", diffuse * cosine(config, square),
+        BudgetRow("diffuse term", diffuse * cosine(config, square),
             "Cp (1 - d) times the error of cos(i)"),
-        Row("specular term", specular, "W times the error of cos(s)^n"),
-        Row("W(i)", weight_error, "steepest line times the error of cos(i), rounding"),
-        Row("cut of S", config.intensity.lsb, "products are exact, the sum is truncated once"),
+        BudgetRow("specular term", specular, "W times the error of cos(s)^n"),
+        BudgetRow("W(i)", weight_error, "steepest line times the error of cos(i), rounding"),
+        BudgetRow("cut of S", config.intensity.lsb,
+                  "products are exact, the sum is truncated once"),
     ]  # fmt: skip
     total = white * sum(row.bound for row in parts[5:]) + 0.5
-    return [*parts, Row("code", total, f"LSB: {white} times the terms, and the final rounding")]
+    return [
+        *parts,
+        BudgetRow("code", total, f"LSB: {white} times the terms, and the final rounding"),
+    ]
 
 
 def derived(config: Config, n: float) -> bool:

@@ -47,14 +47,14 @@ class Camera:
     """
 
     projection: str
-    axes: np.ndarray
-    target: np.ndarray
-    eye: np.ndarray
+    axes: Reals
+    target: Reals
+    eye: Reals
     height: float = 1.0
     fov: float = DEFAULT_FOV
     near: float = 0.0
 
-    def project(self, points: np.ndarray, width: int, height: int) -> np.ndarray:
+    def project(self, points: Reals, width: int, height: int) -> Reals:
         """Project scene points float64[..., 3] to homogeneous screen points float64[..., 4].
 
         The columns are X, Y, w, z. Screen x = X/w and screen y = Y/w, in pixels of a picture of
@@ -74,7 +74,7 @@ class Camera:
             scale = height / self.height
         return np.stack([width / 2.0 * w + scale * x, height / 2.0 * w - scale * y, w, z], axis=-1)
 
-    def depth(self, w: np.ndarray, z: np.ndarray) -> np.ndarray:
+    def depth(self, w: Reals, z: Reals) -> Reals:
         """Depth of points: -z (orthographic) or -1/w (perspective); same shape as w and z.
 
         The depth grows with the distance from the eye and is linear in screen x and y over a

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from phong75.model.arrays import ArrayLike, Ints, Reals
+from phong75.model.arrays import ArrayLike, Flags, Ints, Reals
 from phong75.model.front.mesh import normalize
 
 
@@ -30,14 +30,14 @@ class ScanLineWeights:
     across: float64[n], 0 to 1, position of the point between the long edge (0) and the short one.
     """
 
-    lower: np.ndarray
-    along_long: np.ndarray
-    along_short: np.ndarray
-    across: np.ndarray
+    lower: Flags
+    along_long: Reals
+    along_short: Reals
+    across: Reals
 
 
 def scan_line_weights(
-    x: Reals | Ints, y: Reals | Ints, px: Reals | Ints, py: Reals | Ints
+    x: Ints | Reals, y: Ints | Reals, px: Ints | Reals, py: Ints | Reals
 ) -> ScanLineWeights:
     """Weights of the points (px, py) in the triangles x, y.
 

@@ -41,9 +41,9 @@ class Mesh:
     degenerate: number of triangles that were dropped because they have no area.
     """
 
-    vertices: np.ndarray
-    faces: np.ndarray
-    normals: np.ndarray
+    vertices: Reals
+    faces: Ints
+    normals: Reals
     degenerate: int = 0
 
     def transformed(
@@ -75,7 +75,7 @@ class Mesh:
         return Mesh(self.vertices, self.faces, normals, self.degenerate)
 
 
-def normalize(vectors: np.ndarray) -> np.ndarray:
+def normalize(vectors: Reals) -> Reals:
     """`vectors` (float64[..., 3]) scaled to unit length; the zero vector stays zero."""
     # The largest component is scaled to 1 first, so that squares neither overflow nor underflow.
     largest = np.max(np.abs(vectors), axis=-1, keepdims=True)
@@ -84,7 +84,7 @@ def normalize(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.where(length > 0, length, 1.0)
 
 
-def apply_matrix(matrix: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+def apply_matrix(matrix: Reals, vectors: Reals) -> Reals:
     """`matrix` (float64[3, 3]) times each of `vectors` (float64[..., 3]).
 
     The product is written out by component because a BLAS product may round equal vectors
@@ -104,7 +104,7 @@ def rotation_matrix(degrees: ArrayLike) -> Reals:
     return about_z @ about_y @ about_x
 
 
-def face_normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+def face_normals(vertices: Reals, faces: Ints) -> Reals:
     """Unit normals of the faces, float64[F, 3]; zero for degenerate faces.
 
     vertices: float64[V, 3]. faces: int64[F, 3].
@@ -117,7 +117,7 @@ def face_normals(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return np.where(area > DEGENERATE_AREA, normalize(cross), 0.0)
 
 
-def corner_normals(vertices: np.ndarray, faces: np.ndarray, crease: float) -> np.ndarray:
+def corner_normals(vertices: Reals, faces: Ints, crease: float) -> Reals:
     """Unit normals of all corners, float64[F, 3, 3], computed from the faces alone.
 
     The normal at a corner is the weighted mean of the normals of the faces around its vertex. Only
@@ -142,7 +142,7 @@ def corner_normals(vertices: np.ndarray, faces: np.ndarray, crease: float) -> np
     return np.where(cancelled[..., None], flat[:, None, :], mean)
 
 
-def weld(vertices: np.ndarray) -> np.ndarray:
+def weld(vertices: Reals) -> Ints:
     """A label for each of `vertices` (float64[V, 3]), int64[V]; equal coordinates, equal label."""
     order = np.lexsort(vertices.T)
     differs = np.any(np.diff(vertices[order], axis=0) != 0, axis=1)
@@ -151,7 +151,7 @@ def weld(vertices: np.ndarray) -> np.ndarray:
     return label
 
 
-def _corner_angles(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+def _corner_angles(vertices: Reals, faces: Ints) -> Reals:
     """Angle of each face at each of its corners, float64[F, 3], radians."""
     corners = vertices[faces]
     ahead = normalize(np.roll(corners, -1, axis=1) - corners)
@@ -159,7 +159,7 @@ def _corner_angles(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return np.arccos(np.clip(np.sum(ahead * behind, axis=-1), -1.0, 1.0))
 
 
-def _smooth_groups(welded: np.ndarray, flat: np.ndarray, min_cosine: float) -> np.ndarray:
+def _smooth_groups(welded: Ints, flat: Reals, min_cosine: float) -> Ints:
     """A label for each corner, int64[3 F], equal where corners share a normal.
 
     welded: int64[F, 3], welded vertices of the faces. flat: float64[F, 3], normals of the faces.
@@ -325,8 +325,7 @@ def _read_parts(path: Path) -> tuple[Reals, Ints, Reals | None]:
     except Exception as error:  # trimesh's readers pass on any exception of their libraries
         raise InputError(f"{path}: not a readable mesh: {_line(error)}") from None
 
-    all_vertices, all_faces, offset = [], [], 0
-    all_normals: list[Reals | None] = []
+    all_vertices, all_faces, all_normals, offset = [], [], [], 0
     for node in sorted(scene.graph.nodes_geometry):
         matrix, name = scene.graph.get(node)
         part = scene.geometry[name]
@@ -343,7 +342,8 @@ def _read_parts(path: Path) -> tuple[Reals, Ints, Reals | None]:
         if not np.array_equal(matrix, np.eye(4)):
             vertices = apply_matrix(linear, vertices) + shift
             if normals is not None:
-                normals = normalize(apply_matrix(np.linalg.inv(linear).T, normals))
+                inverse = np.asarray(np.linalg.inv(linear), np.float64)
+                normals = normalize(apply_matrix(inverse.T, normals))
             if np.linalg.det(linear) < 0:
                 faces = faces[:, ::-1]
                 normals = None if normals is None else normals[:, ::-1]
@@ -354,13 +354,14 @@ def _read_parts(path: Path) -> tuple[Reals, Ints, Reals | None]:
     if not all_faces:
         raise InputError(f"{path}: the mesh has no faces")
     vertices, faces = np.concatenate(all_vertices), np.concatenate(all_faces)
-    if all(n is None for n in all_normals):
+    given = [n for n in all_normals if n is not None]
+    if not given:
         return vertices, faces, None
-    if any(n is None for n in all_normals):  # some parts have no normals: compute theirs
+    if len(given) < len(all_normals):  # some parts have no normals: compute theirs
         computed = corner_normals(vertices, faces, DEFAULT_CREASE)
         pieces = np.split(computed, np.cumsum([len(f) for f in all_faces])[:-1])
-        all_normals = [c if n is None else n for c, n in zip(pieces, all_normals, strict=True)]
-    return vertices, faces, np.concatenate([n for n in all_normals if n is not None])
+        given = [c if n is None else n for c, n in zip(pieces, all_normals, strict=True)]
+    return vertices, faces, np.concatenate(given)
 
 
 def _check_obj_indices(path: Path) -> None:

@@ -53,7 +53,7 @@ import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -91,6 +91,9 @@ SHAPES: dict[str, Callable[..., Mesh]] = {
 #: far smaller than a pixel.
 MAX_TESSELLATION = {"divisions": 128, "segments": 1024, "sides": 1024, "rings": 1024}
 
+#: What a method of `_Table` returns for a missing key.
+Default = TypeVar("Default")
+
 
 @dataclass(frozen=True)
 class Material:
@@ -111,7 +114,7 @@ class Material:
 
     def weight(self, zn: ArrayLike) -> Reals:
         """W at `zn` (any shape), float64."""
-        return np.interp(np.asarray(zn, float), self.weight_zn, self.weight_values)
+        return np.interp(np.asarray(zn, np.float64), self.weight_zn, self.weight_values)
 
 
 @dataclass
@@ -137,7 +140,7 @@ class Scene:
     height: int
     background: tuple[float, float, float]
     camera: Camera
-    light: np.ndarray
+    light: Reals
     two_sided: bool
     interpolation: str
     objects: list[SceneObject]
@@ -212,7 +215,7 @@ def _mesh_scene(path: Path, size: tuple[int, int] | None, config: Config) -> Sce
 
 def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Config) -> Scene:
     width, height = _size(root, size, config)
-    background = root.reals("background", 3, DEFAULT_BACKGROUND, 0.0, 1.0)
+    background = root.triple("background", DEFAULT_BACKGROUND, 0.0, 1.0)
     two_sided = root.boolean("two_sided", False)
     interpolation = root.choice("interpolation", INTERPOLATIONS, "linear")
     materials: list[Material] = []
@@ -247,7 +250,7 @@ def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Confi
     )
 
 
-def _read_toml(path: Path) -> dict:
+def _read_toml(path: Path) -> dict[str, Any]:
     try:
         text = path.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
@@ -276,14 +279,15 @@ def _size(root: _Table, size: tuple[int, int] | None, config: Config) -> tuple[i
             raise InputError(
                 f"{where} = {value[0]}x{value[1]} is outside 1 to {config.max_size} pixels"
             )
-    return tuple(size or in_file or DEFAULT_SIZE)
+    width, height = size or in_file or DEFAULT_SIZE
+    return width, height
 
 
 def _material(table: _Table) -> Material:
     default = Material()
     zn, values = _weight(table)
     material = Material(
-        table.reals("color", 3, default.color, 0.0, 1.0),
+        table.triple("color", default.color, 0.0, 1.0),
         table.real("d", default.d, 0.0, 1.0),
         table.real("n", default.n, 1.0, 128.0),
         zn or default.weight_zn,
@@ -337,18 +341,21 @@ def _object(
         if crease is not None:
             mesh = mesh.with_crease(crease)
     else:
+        assert file is not None  # checked above
         try:
             mesh = load_mesh(path.parent / file, crease)
         except InputError as error:
             raise InputError(f"{table.where('mesh')}: {error}") from None
-    scale = table.value("scale", 1.0)
-    scale = table.reals("scale", 3) if isinstance(scale, list) else (table.real("scale", 1.0),) * 3
+    if isinstance(table.value("scale", 1.0), list):
+        scale = table.triple("scale", (1.0, 1.0, 1.0))
+    else:
+        scale = (table.real("scale", 1.0),) * 3
     if 0.0 in scale:
         raise table.error("scale", "= 0 would flatten the object")
     mesh = mesh.transformed(
         scale,
-        table.reals("rotate", 3, (0.0, 0.0, 0.0)),
-        table.reals("translate", 3, (0.0, 0.0, 0.0)),
+        table.triple("rotate", (0.0, 0.0, 0.0)),
+        table.triple("translate", (0.0, 0.0, 0.0)),
     )
     reference = table.value("material", None)
     if isinstance(reference, dict):
@@ -370,7 +377,7 @@ def _object(
 
 def _shape(table: _Table, shape: str) -> Mesh:
     """The mesh of a shape. The parameters of the shape's function are keys of the table."""
-    arguments = {}
+    arguments: dict[str, float] = {}
     for name, parameter in inspect.signature(SHAPES[shape]).parameters.items():
         if isinstance(parameter.default, int):
             least = 1 if name in ("rings", "divisions") else 3
@@ -384,15 +391,15 @@ def _shape(table: _Table, shape: str) -> Mesh:
     return SHAPES[shape](**arguments)
 
 
-def _camera(table: _Table, points: np.ndarray, aspect: float) -> Camera:
+def _camera(table: _Table, points: Reals, aspect: float) -> Camera:
     """The camera of a [camera] table. Missing keys are chosen so that `points` fill the picture.
 
     points: float64[V, 3], all vertices of the scene. aspect: width / height.
     """
     projection = table.choice("projection", ("orthographic", "perspective"), "orthographic")
     perspective = projection == "perspective"
-    eye, direction = table.reals("eye", 3, None), table.reals("direction", 3, None)
-    target, up = table.reals("target", 3, None), table.reals("up", 3, None)
+    eye, direction = table.triple("eye", None), table.triple("direction", None)
+    target, up = table.triple("target", None), table.triple("up", None)
     height, fov = table.real("height", None), table.real("fov", None)
     near = table.real("near", None)
     if eye is not None and direction is not None:
@@ -411,10 +418,12 @@ def _camera(table: _Table, points: np.ndarray, aspect: float) -> Camera:
         raise table.error("up", "= [0, 0, 0] has no direction")
     table.finish()
 
-    if eye is not None:
-        middle = (points.min(axis=0) + points.max(axis=0)) / 2.0
-        target = middle if target is None else np.asarray(target)
-        back, key = np.asarray(eye) - target, "eye"
+    centre = None if target is None else np.asarray(target)
+    viewpoint = None if eye is None else np.asarray(eye)
+    if viewpoint is not None:
+        if centre is None:
+            centre = (points.min(axis=0) + points.max(axis=0)) / 2.0
+        back, key = viewpoint - centre, "eye"
     else:
         back, key = np.asarray(direction or DEFAULT_DIRECTION), "direction"
     if not np.any(back):
@@ -429,24 +438,23 @@ def _camera(table: _Table, points: np.ndarray, aspect: float) -> Camera:
 
     if perspective:
         fov = fov or DEFAULT_FOV
-        if eye is None:
-            target, distance = fit_perspective(points, axes, target, aspect, fov)
-            eye = target + distance * axes[2]
-        eye = np.asarray(eye, float)
-        near = near or NEAR * float(np.linalg.norm(eye - target))
-        return Camera(projection, axes, target, eye, fov=fov, near=near)
-    target, fitting = fit_orthographic(points, axes, target, aspect)
-    return Camera(projection, axes, target, target + axes[2], height=height or fitting)
+        if viewpoint is None or centre is None:
+            centre, distance = fit_perspective(points, axes, centre, aspect, fov)
+            viewpoint = centre + distance * axes[2]
+        near = near or NEAR * float(np.linalg.norm(viewpoint - centre))
+        return Camera(projection, axes, centre, viewpoint, fov=fov, near=near)
+    centre, fitting = fit_orthographic(points, axes, centre, aspect)
+    return Camera(projection, axes, centre, centre + axes[2], height=height or fitting)
 
 
-def _light(table: _Table, camera: Camera) -> np.ndarray:
+def _light(table: _Table, camera: Camera) -> Reals:
     """Unit vector towards the light, float64[3], scene axes."""
-    direction = table.reals("direction", 3, None)
+    components = table.triple("direction", None)
     relative_to = table.choice("relative_to", ("scene", "camera"), "scene")
     table.finish()
-    if direction is None:
-        direction, relative_to = DEFAULT_LIGHT, "camera"
-    direction = np.asarray(direction)
+    if components is None:
+        components, relative_to = DEFAULT_LIGHT, "camera"
+    direction = np.asarray(components)
     if not np.any(direction):
         raise table.error("direction", "= [0, 0, 0] has no direction")
     direction = direction / np.max(np.abs(direction))
@@ -468,7 +476,7 @@ class _Table:
     with a `default` return it if the key is missing.
     """
 
-    def __init__(self, values: dict, file: str, prefix: str = ""):
+    def __init__(self, values: dict[str, Any], file: str, prefix: str = "") -> None:
         self.values, self.file, self.prefix = values, file, prefix
         self.known: set[str] = set()
 
@@ -516,7 +524,9 @@ class _Table:
             raise self.error(key, f"= {value:g} is outside [{low:g}, {high:g}]")
         return float(value)
 
-    def real(self, key: str, default: float | None, low: float = -1e30, high: float = 1e30) -> Any:
+    def real(
+        self, key: str, default: Default, low: float = -1e30, high: float = 1e30
+    ) -> float | Default:
         """A real number from `low` to `high`."""
         value = self.value(key, None)
         return default if value is None else self._number(key, value, low, high)
@@ -535,21 +545,16 @@ class _Table:
             raise self.error(key, f"= {_show(value)} is not a list of numbers")
         return [self._number(f"{key}[{i}]", v, low, high) for i, v in enumerate(value)]
 
-    def reals(
-        self,
-        key: str,
-        count: int,
-        default: tuple[float, ...] | None = None,
-        low: float = -1e30,
-        high: float = 1e30,
-    ) -> Any:
-        """A tuple of `count` real numbers from `low` to `high`."""
+    def triple(
+        self, key: str, default: Default, low: float = -1e30, high: float = 1e30
+    ) -> tuple[float, float, float] | Default:
+        """Three real numbers from `low` to `high`."""
         if self.value(key, None) is None:
             return default
         values = self.list_of_reals(key, low, high)
-        if len(values) != count:
-            raise self.error(key, f"= {_show(values)} does not have {count} numbers")
-        return tuple(values)
+        if len(values) != 3:
+            raise self.error(key, f"= {_show(values)} does not have 3 numbers")
+        return values[0], values[1], values[2]
 
     def boolean(self, key: str, default: bool) -> bool:
         """True or False."""
@@ -558,14 +563,16 @@ class _Table:
             raise self.error(key, f"= {_show(value)} is not true or false")
         return value
 
-    def text(self, key: str, default: str | None) -> Any:
+    def text(self, key: str, default: Default) -> str | Default:
         """A string."""
-        value = self.value(key, default)
-        if value is not None and not isinstance(value, str):
+        value = self.value(key, None)
+        if value is None:
+            return default
+        if not isinstance(value, str):
             raise self.error(key, f"= {_show(value)} is not a string")
         return value
 
-    def choice(self, key: str, choices: tuple[str, ...], default: str | None) -> Any:
+    def choice(self, key: str, choices: tuple[str, ...], default: Default) -> str | Default:
         """One of the strings `choices`."""
         value = self.text(key, default)
         if value is not None and value != default and value not in choices:

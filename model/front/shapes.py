@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from phong75.model.arrays import Flags, Reals
+from phong75.model.arrays import Flags, Ints, Reals
 from phong75.model.front.mesh import Mesh, corner_normals, normalize
 
 TEAPOT_FILE = Path(__file__).parent.parent / "data" / "newell_teapot_patches.txt"
@@ -127,7 +127,7 @@ def teapot(divisions: int = 10) -> Mesh:
     return Mesh(vertices[first], label.reshape(-1)[faces], normals)
 
 
-def teapot_patch(number: int) -> np.ndarray:
+def teapot_patch(number: int) -> Reals:
     """Control points float64[4, 4, 3] (indices u, v) of patch `number` (0 to 31) of the teapot.
 
     Patches 0 to 3 are the rim, 4 to 11 the body, 12 to 15 the handle, 16 to 19 the spout, 20 to 27
@@ -137,7 +137,7 @@ def teapot_patch(number: int) -> np.ndarray:
     return points[patches[number]].reshape(4, 4, 3)
 
 
-def patch_mesh(control: np.ndarray, divisions: int = 10) -> Mesh:
+def patch_mesh(control: Reals, divisions: int = 10) -> Mesh:
     """The mesh of one bicubic patch with D = `divisions` steps in u and in v.
 
     control: float64[4, 4, 3], control points, indices u, v. Vertex (D + 1) j + i has u = i/D and
@@ -147,7 +147,7 @@ def patch_mesh(control: np.ndarray, divisions: int = 10) -> Mesh:
     return _grid_mesh(grid[0].swapaxes(0, 1), normals[0].swapaxes(0, 1))
 
 
-def patch_surface(control: np.ndarray, divisions: int) -> tuple[np.ndarray, np.ndarray]:
+def patch_surface(control: Reals, divisions: int) -> tuple[Reals, Reals]:
     """Points and unit normals of bicubic Bezier patches on a regular grid of parameters.
 
     control: float64[P, 4, 4, 3], control points of P patches, indices u, v. Returns (points,
@@ -177,7 +177,7 @@ def patch_surface(control: np.ndarray, divisions: int) -> tuple[np.ndarray, np.n
     return surface(value, value), normalize(np.cross(dv, du))
 
 
-def _read_patches() -> tuple[np.ndarray, np.ndarray]:
+def _read_patches() -> tuple[Reals, Ints]:
     """Control points float64[N, 3] of the teapot, and the indices of each patch, int64[P, 16]."""
     lines = [
         line for line in TEAPOT_FILE.read_text(encoding="ascii").splitlines() if line[0] != "#"
@@ -189,24 +189,24 @@ def _read_patches() -> tuple[np.ndarray, np.ndarray]:
     return points, indices
 
 
-def bernstein(t: np.ndarray) -> np.ndarray:
+def bernstein(t: Reals) -> Reals:
     """The four cubic Bernstein polynomials at `t` (float64[T]), float64[T, 4]."""
     s = 1.0 - t
     return np.stack([s**3, 3 * t * s**2, 3 * t**2 * s, t**3], axis=-1)
 
 
-def bernstein_slope(t: np.ndarray) -> np.ndarray:
+def bernstein_slope(t: Reals) -> Reals:
     """Derivatives of the cubic Bernstein polynomials at `t` (float64[T]), float64[T, 4]."""
     s = 1.0 - t
     return np.stack([-3 * s**2, 3 * s**2 - 6 * t * s, 6 * t * s - 3 * t**2, 3 * t**2], axis=-1)
 
 
-def _full_turn(steps: int) -> np.ndarray:
+def _full_turn(steps: int) -> Reals:
     """Angles from 0 to 2 pi in radians, both ends included, float64[steps + 1]."""
     return np.linspace(0.0, 2.0 * np.pi, steps + 1)
 
 
-def _grid_mesh(points: np.ndarray, normals: np.ndarray) -> Mesh:
+def _grid_mesh(points: Reals, normals: Reals) -> Mesh:
     """Mesh of a grid of points, two triangles per cell; triangles without area are left out.
 
     points, normals: float64[R, C, 3], unit normals. Seen from outside, columns go to the right and

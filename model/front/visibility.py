@@ -50,11 +50,11 @@ class Triangles:
     material: int64[T], index of the material.
     """
 
-    x: np.ndarray
-    y: np.ndarray
-    depth: np.ndarray
-    value: np.ndarray
-    material: np.ndarray
+    x: Ints
+    y: Ints
+    depth: Reals
+    value: Reals
+    material: Ints
 
     def __len__(self) -> int:
         return len(self.x)
@@ -77,10 +77,10 @@ class Segments:
     triangle: index of the triangle. All arrays are int64[n].
     """
 
-    triangle: np.ndarray
-    y: np.ndarray
-    left: np.ndarray
-    right: np.ndarray
+    triangle: Ints
+    y: Ints
+    left: Ints
+    right: Ints
 
     def __len__(self) -> int:
         return len(self.y)
@@ -130,7 +130,7 @@ def clip(corners: Reals, value: Reals, material: Ints, near: float) -> tuple[Rea
     return values[..., :4], values[..., 4:], material
 
 
-def _cut(values: np.ndarray, distance: np.ndarray, inner: int, outer: int) -> np.ndarray:
+def _cut(values: Reals, distance: Reals, inner: int, outer: int) -> Reals:
     """The point where the edge from corner `inner` to corner `outer` meets the plane.
 
     values: float64[n, 3, C]. distance: float64[n, 3], signed distances from the plane, >= 0 inside.
@@ -149,18 +149,19 @@ def set_up(
     which is a negative area with y downward. depth, value, material: see `Triangles`, vertices in
     the order of x and y.
     """
-    gx, gy = (np.floor(c * GRID + 0.5).astype(np.int64) for c in (x, y))
-    area = (gx[:, 1] - gx[:, 0]) * (gy[:, 2] - gy[:, 0])
-    area -= (gx[:, 2] - gx[:, 0]) * (gy[:, 1] - gy[:, 0])
+    column, line = (np.floor(c * GRID + 0.5).astype(np.int64) for c in (x, y))
+    x0, x1, x2 = column.T
+    y0, y1, y2 = line.T
+    area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
     keep = np.flatnonzero(area != 0 if two_sided else area < 0)
-    order = np.argsort(gy[keep], axis=1, kind="stable")
+    order = np.argsort(line[keep], axis=1, kind="stable")
     row = keep[:, None]
     return Triangles(
-        gx[row, order], gy[row, order], depth[row, order], value[row, order], material[keep]
+        column[row, order], line[row, order], depth[row, order], value[row, order], material[keep]
     )
 
 
-def line_range(triangles: Triangles, width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
+def line_range(triangles: Triangles, width: int, height: int) -> tuple[Ints, Ints]:
     """First scan line of each triangle and the line after its last, int64[T] each, 0 to height.
 
     A triangle covers the lines whose centre is at or below its top vertex and above its bottom
@@ -172,7 +173,7 @@ def line_range(triangles: Triangles, width: int, height: int) -> tuple[np.ndarra
     return first, np.where(off_screen, first, np.maximum(end, first))
 
 
-def _first_centre(coordinate: np.ndarray) -> np.ndarray:
+def _first_centre(coordinate: Ints) -> Ints:
     """The first pixel whose centre is at or after `coordinate` (1/GRID pixel)."""
     return -((GRID // 2 - coordinate) // GRID)
 
@@ -216,7 +217,7 @@ def _crossing(xa: Ints, ya: Ints, xb: Ints, yb: Ints, y: Ints) -> Ints:
     return -((-reach) // (GRID * rise))
 
 
-def resolve(segments: Segments, depth: np.ndarray, width: int) -> Segments:
+def resolve(segments: Segments, depth: Reals, width: int) -> Segments:
     """The visible parts of `segments`, sorted by y, then x.
 
     depth: float64[n, 2], depth at the first and at the last pixel of each segment. At equal depth
@@ -247,7 +248,7 @@ def resolve(segments: Segments, depth: np.ndarray, width: int) -> Segments:
     return visible.take(np.argsort(visible.y * width + visible.left, kind="stable"))
 
 
-def _nearest_runs(segments: Segments, depth: np.ndarray, width: int) -> Segments:
+def _nearest_runs(segments: Segments, depth: Reals, width: int) -> Segments:
     """Visible runs of overlapping `segments`: the nearest segment owns a pixel.
 
     A run is the longest sequence of pixels on a line with one owner. Arguments as for `resolve`.

@@ -151,8 +151,8 @@ def cost_chart(rows: list[dict], path: Path) -> None:
     Writes `path`.png and .svg.
     """
     columns = [("multipliers of at most 18 x 18 bits", lambda row: row["multipliers"])]
-    if all(row["lut_sites"] is not None for row in rows):
-        columns.append(("LUT sites (nextpnr)", lambda row: row["lut_sites"]))
+    if all(row["lut_cells"] is not None for row in rows):
+        columns.append(("LUT cells (Yosys)", lambda row: row["lut_cells"]))
     _figure(rows, columns, "Error against hardware (ECP5)", path)
 
 

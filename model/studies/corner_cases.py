@@ -43,7 +43,7 @@ def _no_check(frame: Frame, got: Pixels) -> list[str]:
 
 
 @dataclass(frozen=True)
-class Case:
+class CornerCase:
     """One corner case.
 
     extreme: what is extreme in the input. expected: the expected behaviour.
@@ -154,7 +154,7 @@ def dark_stays_ambient(frame: Frame, got: Pixels) -> list[str]:
 # -- directions and lengths ------------------------------------------------------------------------
 
 
-def _ends_apart() -> Iterator[Case]:
+def _ends_apart() -> Iterator[CornerCase]:
     rng = np.random.default_rng(1)
     for degrees in (120, 170, 179, 179.9, 179.99):
         first = _directions(rng, 56)
@@ -162,7 +162,7 @@ def _ends_apart() -> Iterator[Case]:
         turn = np.radians(degrees)
         last = np.cos(turn) * first + np.sin(turn) * np.cross(axis, first)
         material = np.arange(56) % (2 * len(EXPONENTS))
-        yield Case(
+        yield CornerCase(
             f"ends {degrees}° apart",
             f"normals at the ends of a span {degrees}° apart; the length falls to "
             f"{np.cos(turn / 2):.2g} in the middle",
@@ -171,7 +171,7 @@ def _ends_apart() -> Iterator[Case]:
             dark_stays_ambient,
         )
     step = rng.integers(-(1 << 22), 1 << 22, (56, 3))
-    yield Case(
+    yield CornerCase(
         "ends exactly opposed",
         "ends that cancel to the last bit: the normal in the middle is the zero vector",
         "Cp d there, flagged once per span; accurate one pixel beside it",
@@ -180,7 +180,7 @@ def _ends_apart() -> Iterator[Case]:
     )
     across, down = np.array([1 << 23, 0, 1 << 22]), np.array([1 << 20, 1 << 23, -(1 << 22)])
     line = np.arange(-64, 65)[:, None]
-    yield Case(
+    yield CornerCase(
         "plane through zero",
         "normals linear in x and y that are exactly zero at one pixel",
         "Cp d at that pixel, flagged; every direction accurate around it",
@@ -190,7 +190,7 @@ def _ends_apart() -> Iterator[Case]:
     turn = np.radians([90, 210, 330])
     normals = np.stack([np.cos(turn), np.zeros(3), np.sin(turn)], axis=1)
     corners = np.array([[[4.0, 4.0], [30.0, 300.0], [316.0, 150.0]]])
-    yield Case(
+    yield CornerCase(
         "three normals at 120°",
         "the normals of a triangle's corners cancel at its centre",
         "every pixel of the triangle once; accurate from the integers at the ports",
@@ -205,10 +205,10 @@ def _zeros(frame: Frame, count: int) -> list[str]:
     return [] if zeros == count else [f"the case has {zeros} zero vectors, expected {count}"]
 
 
-def _lengths() -> Iterator[Case]:
+def _lengths() -> Iterator[CornerCase]:
     rng = np.random.default_rng(2)
     for two_sided in (False, True):
-        yield Case(
+        yield CornerCase(
             f"zero vector{', two-sided' if two_sided else ''}",
             "spans of zero vectors only, of every material",
             "Cp d, every pixel flagged",
@@ -216,7 +216,7 @@ def _lengths() -> Iterator[Case]:
             dark_stays_ambient,
         )
     grid = np.stack(np.meshgrid(*[np.arange(-2, 3)] * 3), axis=-1).reshape(-1, 3)
-    yield Case(
+    yield CornerCase(
         "normals of a few units",
         "all normals with components of -2 to 2 LSB",
         "within the same bound as long normals",
@@ -224,7 +224,7 @@ def _lengths() -> Iterator[Case]:
         dark_stays_ambient,
     )
     short = 2.0**-20
-    yield Case(
+    yield CornerCase(
         "normals of 2⁻²⁰",
         "ends of length 2⁻²⁰: 1024 LSB",
         "within the same bound as unit normals",
@@ -232,7 +232,7 @@ def _lengths() -> Iterator[Case]:
                         np.arange(56) % 14)),
         dark_stays_ambient,
     )  # fmt: skip
-    yield Case(
+    yield CornerCase(
         "lengths 2 to 2⁻²⁰",
         "one end at the limit of the format, the other 2²¹ times shorter",
         "within the same bound as unit normals",
@@ -245,13 +245,13 @@ def _lengths() -> Iterator[Case]:
 # -- spans -----------------------------------------------------------------------------------------
 
 
-def _spans() -> Iterator[Case]:
+def _spans() -> Iterator[CornerCase]:
     rng = np.random.default_rng(3)
     for length in (1, 2, 3, C.max_size):
         count = 28 if length > 3 else 280
         first, last = _directions(rng, count), _directions(rng, count)
         first[:, 2], last[:, 2] = np.abs(first[:, 2]), np.abs(last[:, 2])
-        yield Case(
+        yield CornerCase(
             f"spans of {length}",
             f"spans of {length} pixel{'s' * (length > 1)}",
             "every pixel once, one pixel per cycle",
@@ -264,7 +264,7 @@ def _spans() -> Iterator[Case]:
     up = _span(np.where(signs, low, high), np.where(signs, high, low), 2)
     long = _span(np.where(signs, low, 0), np.where(signs, high, 1), 3)
     down = _span(np.where(signs, high, low), np.where(signs, low, high), 2)
-    yield Case(
+    yield CornerCase(
         "slope at full scale",
         "steps of ±2 per pixel, from one end of the format to the other",
         "no wrap-around; spans that end inside the format are not flagged",
@@ -272,7 +272,7 @@ def _spans() -> Iterator[Case]:
         dark_stays_ambient,
     )
     single = _directions(rng, 4096)
-    yield Case(
+    yield CornerCase(
         "4096 spans back to back",
         "spans of one pixel, each of another material, without an idle cycle between",
         "one pixel per cycle",
@@ -284,7 +284,7 @@ def _spans() -> Iterator[Case]:
 # -- light -----------------------------------------------------------------------------------------
 
 
-def _light() -> Iterator[Case]:
+def _light() -> Iterator[CornerCase]:
     for degrees in (0, 40, 100, 170):
         half = np.radians(degrees / 2)
         away = np.radians(30) * np.linspace(-1, 1, 9)
@@ -295,7 +295,7 @@ def _light() -> Iterator[Case]:
             ends.append(np.stack([np.cos(away) * x, np.sin(away), np.cos(away) * z], axis=1))
         first, last = (np.repeat(end, 14, axis=0) for end in ends)
         same = " (Warnock's arrangement)" if degrees == 0 else ""
-        yield Case(
+        yield CornerCase(
             f"highlights, eye at {degrees}°",
             f"highlights of n = 1 to 128 within one facet; eye and light {degrees}° apart{same}",
             "within the bound of the largest n",
@@ -306,7 +306,7 @@ def _light() -> Iterator[Case]:
     grazing = np.stack([np.cos(azimuth), np.sin(azimuth), 0 * azimuth], axis=1)
     start = np.repeat(C.normal.quantize(grazing), 14, axis=0)
     for degrees in (40, 178):
-        yield Case(
+        yield CornerCase(
             f"grazing light, eye at {degrees}°",
             "cos(i) from 0 to 2⁻¹⁶ along a span, in 28 directions",
             "Cp d at exactly 0; lit from Zn = 1 LSB on",
@@ -321,7 +321,7 @@ def _light() -> Iterator[Case]:
         exact = np.array([h[0], 0, h[1]]) << scale
         normals = np.concatenate([exact + (near << shift) for shift in (0, scale)])
         count = len(normals)
-        yield Case(
+        yield CornerCase(
             f"mirror direction, eye at {degrees}°",
             "the normal halfway between light and eye to the last bit, and one LSB beside it",
             "cos(s)ⁿ is 1 for every n: W = 1 gives white",
@@ -330,14 +330,14 @@ def _light() -> Iterator[Case]:
             lambda f, p: [] if p.rgb[_material(f) >= 7].min() == 255 else ["not white"],
         )  # fmt: skip
     behind = _span([0, 0, -C.normal.one], 0, 5, np.arange(14))
-    yield Case(
+    yield CornerCase(
         "light exactly behind",
         "the normal points exactly away from the light",
         "Cp d",
         _frame(behind.copy()),
         dark_stays_ambient,
     )
-    yield Case(
+    yield CornerCase(
         "light exactly behind, two-sided",
         "the normal points exactly away from the light, |Zn| is shaded",
         "the same colour as for the normal towards the light",
@@ -347,7 +347,7 @@ def _light() -> Iterator[Case]:
     )  # fmt: skip
 
 
-def _terminator() -> Iterator[Case]:
+def _terminator() -> Iterator[CornerCase]:
     azimuth = np.linspace(0, 2 * np.pi, 28, endpoint=False)
     rim = C.normal.quantize(np.stack([np.cos(azimuth), np.sin(azimuth), 0 * azimuth], axis=1))
     variants = ((0, "exactly", False), (0, "exactly, two-sided", True), (16, "but for 2⁻¹⁶", False),
@@ -358,7 +358,7 @@ def _terminator() -> Iterator[Case]:
                        np.tile(np.arange(14), 28))  # fmt: skip
         steep = _span(np.repeat(rim - [0, 0, 1 << 29], 14, axis=0), [0, 0, 1 << 25], 33,
                       np.tile(np.arange(14), 28))  # fmt: skip
-        yield Case(
+        yield CornerCase(
             f"terminator, eye opposite {name}",
             f"Zn through 0 in steps of 1 LSB; eye opposite the light {name}: eq. (3) jumps from "
             "Cp d to Cp d + W",
@@ -371,7 +371,7 @@ def _terminator() -> Iterator[Case]:
 # -- coefficients ----------------------------------------------------------------------------------
 
 
-def _coefficients() -> Iterator[Case]:
+def _coefficients() -> Iterator[CornerCase]:
     rng = np.random.default_rng(4)
     first, last = _directions(rng, 64), _directions(rng, 64)
     first[:, 2], last[:, 2] = np.abs(first[:, 2]), np.abs(last[:, 2])
@@ -383,21 +383,21 @@ def _coefficients() -> Iterator[Case]:
 
     axes = [((1, 0, 0), 0, 0, 1), ((0, 1, 0), 0.5, 0, 1), ((0, 0, 1), 1, 0, 1)]
     full = [((1, 1, 1), d, 1, n) for d, n in ((0, 1), (0.5, 10), (1, 128))]
-    yield Case(
+    yield CornerCase(
         "saturation",
         "sums of up to 2 in each single channel and in all three",
         "white, never a wrap-around to black",
         _frame(crossing(6), _materials(*axes, *full)),
         lambda f, p: [] if (p.rgb[_material(f) == 5] == 255).all() else ["Cp d = 1 is not white"],
     )
-    yield Case(
+    yield CornerCase(
         "coefficients at 0",
         "Cp, d and W all 0, for n = 1 and 128",
         "black",
         _frame(crossing(2), _materials(((0, 0, 0), 0, 0, 1), ((0, 0, 0), 0, 0, 128))),
         lambda f, p: ["not black"] if p.rgb.any() else [],
     )
-    yield Case(
+    yield CornerCase(
         "coefficients at 1",
         "Cp, d and W all 1, for n = 1 and 128",
         "white",
@@ -407,7 +407,7 @@ def _coefficients() -> Iterator[Case]:
     sides = np.arange(C.weight_points) % 2
     one_step = np.arange(C.weight_points) > C.weight_points // 2
     rows = [((0, 0.2, 0), 0.5, w, n) for w in (sides, one_step) for n in (1, 10, 128)]
-    yield Case(
+    yield CornerCase(
         "W(i) with steep steps",
         "W from 0 to 1 between neighbouring points, once and 32 times",
         "within the bound, which grows with the steepest slope of W",
@@ -485,20 +485,20 @@ def _upward(rng: np.random.Generator, shape: tuple[int, ...]) -> Reals:
     return normals
 
 
-def _triangles() -> Iterator[Case]:
+def _triangles() -> Iterator[CornerCase]:
     rng = np.random.default_rng(5)
     every = "every pixel once, none missing; accurate from the integers at the ports"
 
     def tiled(corners: Reals, width: int, height: int) -> Frame:
         return _picture(corners, _upward(rng, (len(corners), 3, 3)), width, height)
 
-    yield Case(
+    yield CornerCase(
         "slivers", "2000 triangles a thousandth of a pixel wide and 300 pixels high", every,
         tiled(_grid(2.3, 2, 1000, 1, 0.001, 300), 8, 304), _fills(2.3, 2, 3.3, 302),
     )  # fmt: skip
     for side, cells in ((1.0, 12), (0.1, 120)):
         wide, high = 2 * side, side
-        yield Case(
+        yield CornerCase(
             f"triangles of {side * side:g} pixel",
             f"a rectangle cut into triangles of {side * side:g} pixel area, {wide:g} wide and "
             f"{high:g} high", every,
@@ -509,19 +509,19 @@ def _triangles() -> Iterator[Case]:
     flat = corners[np.arange(200) % 50].copy()
     flat[:100, 2] = flat[:100, 1]  # two corners coincide
     flat[100:, 2] = 0.75 * flat[100:, 0] + 0.25 * flat[100:, 1]  # three corners on a line
-    yield Case(
+    yield CornerCase(
         "triangles of 0 pixels",
         "triangles without area: two corners coincide, or three are on a line",
         "these triangles draw nothing and open no gap",
         tiled(np.concatenate([flat, corners]), 32, 32), _fills(3, 3, 28, 28),
     )  # fmt: skip
-    yield Case(
+    yield CornerCase(
         "edges along scan lines",
         "horizontal and vertical edges exactly through the centres of pixels",
         "a pixel on an edge belongs to the triangle below or to the right",
         tiled(_grid(2.5, 2.5, 9, 9, 3, 3), 32, 32), _fills(2.5, 2.5, 29.5, 29.5),
     )  # fmt: skip
-    yield Case(
+    yield CornerCase(
         "abrupt turns", "neighbouring triangles with unrelated normals", every,
         tiled(_grid(4, 4, 14, 14, 4, 4), 64, 64), _fills(4, 4, 60, 60),
     )  # fmt: skip
@@ -530,7 +530,7 @@ def _triangles() -> Iterator[Case]:
     index = np.arange(400)
     origin = np.stack([index % 20 * MESH_PIXELS, index // 20 * MESH_PIXELS], axis=-1)
     corners = (np.stack([x, y], axis=-1) / GRID + origin[:, None, None]).reshape(-1, 3, 2)
-    yield Case(
+    yield CornerCase(
         "random meshes",
         "400 random triangulations, some with vertices at the centres of pixels",
         "no pixel twice (the row `shared edges` covers 10⁵ more meshes)",
@@ -538,7 +538,7 @@ def _triangles() -> Iterator[Case]:
     )  # fmt: skip
 
 
-def _t_junctions(rng: np.random.Generator) -> Case:
+def _t_junctions(rng: np.random.Generator) -> CornerCase:
     """A slanted edge from (15.3, 2) to (17.6, 62): one pair of triangles to the left, 13 pairs to
     the right."""
     top, bottom = np.array([15.3, 2.0]), np.array([17.6, 62.0])
@@ -561,14 +561,14 @@ def _t_junctions(rng: np.random.Generator) -> Case:
             messages.append(f"{int(far.sum())} pixels missing that are not on the edge")
         return messages
 
-    return Case(
+    return CornerCase(
         "T-junctions", "13 corners of triangles along the edge of another triangle",
         "no pixel twice; gaps only where the centre of a pixel is within 2⁻¹¹ pixel of the edge",
         _picture(corners, _upward(rng, (len(corners), 3, 3)), 32, 64), check,
     )  # fmt: skip
 
 
-def cases() -> list[Case]:
+def cases() -> list[CornerCase]:
     """All cases, in the order of the table. Every call returns the same integers."""
     makers = (_ends_apart, _lengths, _spans, _light, _terminator, _coefficients, _triangles)
     return [case for maker in makers for case in maker()]

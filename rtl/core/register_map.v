@@ -5,7 +5,7 @@
 //   address                  word
 //   {0, material, interval}  {step s1.16, left u1.16}: W(i) over an interval of Zn
 //   {1, material, field}     a field of the material, or a register (of any material); the indices
-//                            are the PHONG_FIELD_ macros of the configuration
+//                            are the localparams AMBIENT_RED to CONTROL
 //
 // Latency: 1 cycle from a write to the strobes, 2 to the registers, 4 to `unsupported`.
 // Throughput: one write per cycle.

@@ -20,9 +20,11 @@ import phong75
 from phong75.model.analysis import pruning
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import Frame, InputError
-from phong75.model.front.scene import load_scene
+from phong75.model.front.scene import Material, load_scene
 from phong75.model.registers import writes
 from phong75.model.scene_to_frame import front_end
+from phong75.model.twin.core.register_map import unsupported_write
+from phong75.model.twin.pruning.span_guard import span_guard
 from phong75.model.verilog import header
 from phong75.scripts import console
 from phong75.scripts.export import documents, stimulus, verilog
@@ -58,9 +60,9 @@ def export(
     """Write the export of `config` into the folder `out`; returns its files, sorted.
 
     prefix: of every module name; None for the configuration's name. scene: what the stimulus
-    shows, by name or path; None for SCENE. size: of the picture, width and height; None for SIZE,
-    or for the scene's own if `prune` is set. prune: leave out of the hardware what this picture
-    does not need, which takes a scene.
+    shows, by name or path; None for SCENE, in materials that `config` can show. size: of the
+    picture, width and height; None for SIZE, or for the scene's own if `prune` is set. prune: leave
+    out of the hardware what this picture does not need, which takes a scene.
 
     `out` appears whole or not at all. An export that is there is replaced; any other folder that
     is not empty is left alone. The same arguments always give the same files.
@@ -101,11 +103,28 @@ def export(
 
 
 def _frame(scene: str | None, size: tuple[int, int] | None, config: Config) -> Frame:
-    """The frame of `scene`. Raises InputError, also if nothing of it is in the picture."""
-    frame = front_end(load_scene(scene or SCENE, size, config=config), config).frame
+    """The frame of `scene`; for None, of SCENE in materials that `config` can show.
+
+    Raises InputError, also if nothing of it is in the picture.
+    """
+    loaded = load_scene(scene or SCENE, size, config=config)
+    if scene is None:
+        loaded.materials = [_within(material, config) for material in loaded.materials]
+        loaded.two_sided &= config.two_sided
+    frame = front_end(loaded, config).frame
     if not len(frame.spans):
         raise InputError(f"{scene}: the picture shows nothing, so that there is no stimulus")
     return frame
+
+
+def _within(material: Material, config: Config) -> Material:
+    """`material` without what `config` has left out by hand: colour, a varying W, or any."""
+    if config.channels == 1:
+        material = dataclasses.replace(material, color=(material.color[1],) * 3)
+    if not (config.specular and config.weight_function):
+        weight = material.weight_values[0] if config.specular else 0.0
+        material = dataclasses.replace(material, weight_zn=(0.0, 1.0), weight_values=(weight,) * 2)
+    return material
 
 
 def _check(frame: Frame, config: Config, scene: str) -> None:
@@ -119,8 +138,8 @@ def _check(frame: Frame, config: Config, scene: str) -> None:
         return
     needed = pruning.missing(frame, config, full)
     flagged = config.technique == "phong" and (
-        pruning.unsupported_spans(frame, config).any()
-        or any(pruning.unsupported_write(*write, config) for write in writes(frame, config))
+        span_guard(frame.spans, config).any()
+        or any(unsupported_write(*write, config) for write in writes(frame, config))
     )
     if needed or flagged:
         why = f": {needed[0]}" if needed else ""

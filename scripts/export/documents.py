@@ -5,10 +5,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from phong75.model.analysis.pruning import vanishing_exponent
 from phong75.model.config import Config
 from phong75.model.registers import FIELDS, address_bits, word_bits
 from phong75.model.spans import SpanField, span_fields
+from phong75.model.twin.core.register_map import vanishing_exponent
 from phong75.scripts.export.stimulus import Stimulus, first_pixel_latency, pixel_bits, span_bits
 
 _COLOURS = ("red", "green", "blue")
@@ -324,7 +324,8 @@ def readme(
         ),
         "Generate blocks of what this configuration leaves out still name modules that are not in "
         "this folder; they are not elaborated. In comments, a stage number such as `_p13` counts "
-        "cycles of the default configuration.",
+        "cycles of the default configuration, and a format with `(default)` is that of the default "
+        "configuration.",
         "The licence is MIT (`LICENSE`).",
     ]
     return "\n\n".join(out) + "\n"

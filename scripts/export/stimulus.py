@@ -23,7 +23,7 @@ TESTBENCH = design.SIM / "testbench" / "testbench.v"
 #: A stimulus of more pixels takes every k-th span only.
 MOST_PIXELS = 4096
 
-#: Clocks from an accepted span to its first pixel, beside those of `latencies(...)["pixel"]`: the
+#: Cycles from an accepted span to its first pixel, beside those of `latencies(...)["pixel"]`: the
 #: walker, and the FIFO's slot and output register.
 WALKER_AND_FIFO = 3
 
@@ -110,7 +110,7 @@ def stimulus(frame: Frame, config: Config) -> Stimulus:
 
 
 def first_pixel_latency(config: Config) -> int:
-    """Clocks from the edge that takes a span to the first edge at which its first pixel is offered.
+    """Cycles from the edge that takes a span to the first edge at which its first pixel is offered.
 
     Raises BuildError.
     """

@@ -30,6 +30,14 @@ _PORT = re.compile(
     r"^ +(?P<direction>input|output) +(?P<kind>wire|reg) *(?P<range>\[[^\]]*\])? *"
     r"(?P<name>\w+,?) *(?P<comment>//.*)?$"
 )
+#: Comments that send the reader to what an export does not have, and what they say there. A gap may
+#: be the end of a comment's line.
+_GAP = r"(?:\s+//)?\s+"
+_ELSEWHERE = (
+    (rf"(PHONG_\w+){_GAP}in{_GAP}latency\.vh;{_GAP}\d+{_GAP}by{_GAP}default", r"\1"),
+    (rf"see{_GAP}latency\.vh;{_GAP}(\d+)", r"\1"),
+    (r"the PHONG_FIELD_ macros of the configuration", "in ports.md"),
+)
 _WORDS_A_LINE = 6
 
 
@@ -102,6 +110,8 @@ def expand(text: str, config: Config, values: dict[str, str]) -> str:
     Raises ValueError if a macro or another directive than `default_nettype` is left.
     """
     text = re.sub(r'^`include "[^"]*"\n', "", text, flags=re.MULTILINE)
+    for pattern, replacement in _ELSEWHERE:
+        text = re.sub(pattern, replacement, text)
     parts = _COMMENT.split(text)  # code, comment, code, ...
     for k in range(1, len(parts), 2):
         line = parts[k - 1].rpartition("\n")[2]

@@ -61,7 +61,7 @@ COLOURS = (
 #: Columns of the sweep's tables that can be axes, and their names.
 COSTS = {
     "frame_us": "run time of all frames, µs", "cycles": "cycles of all frames",
-    "dsp": "multipliers", "lut_sites": "LUT sites", "ff": "flip-flops",
+    "dsp": "multipliers", "lut_cells": "LUT cells (Yosys)", "ff": "flip-flops",
     "simulate_s": "host: seconds of RTL simulation", "model_s": "host: seconds of the model",
 }  # fmt: skip
 ERRORS = {
@@ -117,7 +117,7 @@ class SceneResult:
     views: list[View]
     error_map: str
     failures: list[str]
-    budget: list[error_budget.Row] = field(default_factory=list)
+    budget: list[error_budget.BudgetRow] = field(default_factory=list)
     features: dict[str, FeatureRow] = field(default_factory=dict)
 
     @property

@@ -22,7 +22,7 @@ from phong75.model.studies import charts, shading_artifacts, tessellation
 from phong75.model.studies.surfaces import SURFACES
 from phong75.scripts.console import MismatchError
 from phong75.sim.design import BUILD
-from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 
 FOLDER = BUILD / "sweep"
 #: Meshes on which the techniques can be told apart: steps once round.
@@ -36,7 +36,7 @@ SQUARE_SIZE = 200
 def shaded_by_rtl(frames: list, technique: str) -> list:
     """`Pixels` of each of `frames`. Raises MismatchError, BuildError, SimulationError."""
     config = TECHNIQUES[technique]
-    results = simulate_jobs([Job(frame) for frame in frames], config)
+    results = simulate_jobs([SimJob(frame) for frame in frames], config)
     for frame, result in zip(frames, results, strict=True):
         if metrics.compare(twin.render(frame, config), result.pixels).mismatches:
             raise MismatchError(f"{technique}: RTL and model differ")

@@ -38,7 +38,8 @@ STATED_MHZ = 200.0
 COLUMNS = (
     "name", "family", "method", "label", "cycles", "clock_mhz", "clock_source", "frame_us",
     "max_lsb", "rms_lsb", "p999_lsb", "mean_lsb", "correctly_rounded", "psnr_db", "simulate_s",
-    "model_s", "dsp", "lut_sites", "ff", "ebr", "pareto", "multipliers", "latency_cycles", "pixels",
+    "model_s", "dsp", "lut_sites", "lut_cells", "ff", "ebr", "pareto", "multipliers",
+    "latency_cycles", "pixels",
     "mismatches", "port_max_lsb", "bound_lsb", "pareto_hardware", "longest_path",
 )  # fmt: skip
 
@@ -77,8 +78,9 @@ def hardware(config: Config, area: bool, route: bool) -> dict:
         folder.mkdir(parents=True, exist_ok=True)
         used, clock = ecp5.synthesize(config, folder)["resources"], stated
     else:
-        return stated | dict.fromkeys(("dsp", "lut_sites", "ff", "ebr"))
-    return {name: used[name] for name in ("dsp", "lut_sites", "ff", "ebr")} | clock
+        return stated | dict.fromkeys(clocks.SIZES)
+    used = used | {"lut_cells": ecp5.lut_cells(used)}
+    return {name: used[name] for name in clocks.SIZES} | clock
 
 
 def row(point: Point, area: bool, route: bool) -> dict:
@@ -159,7 +161,7 @@ def finish(rows: list[dict], folder: Path = FOLDER) -> None:
         found["pareto"], found["pareto_hardware"] = int(on), None
     sized = [found for found in rows if found["dsp"] is not None]
     front = pareto.on_front(
-        [(found["dsp"], found["lut_sites"], found["rms_lsb"]) for found in sized]
+        [(found["dsp"], found["lut_cells"], found["rms_lsb"]) for found in sized]
     )
     for found, on in zip(sized, front, strict=True):
         found["pareto_hardware"] = int(on)

@@ -26,7 +26,7 @@ from phong75.scripts import console, recorded
 from phong75.scripts.console import MismatchError
 from phong75.scripts.studies import artifact_runs
 from phong75.sim.design import BUILD
-from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 
 FOLDER = BUILD / "sweep"
 #: Meshes whose errors are recorded: {shape: level}.
@@ -64,7 +64,7 @@ def measure(
                 frame, picture = tessellation.shaded(surface, level, technique, size)
                 frames.append(frame)
                 pictures.append(picture)
-            results = simulate_jobs([Job(frame) for frame in frames], config)
+            results = simulate_jobs([SimJob(frame) for frame in frames], config)
             for frame, result in zip(frames, results, strict=True):
                 if metrics.compare(twin.render(frame, config), result.pixels).mismatches:
                     raise MismatchError(f"{shape}, {technique}: RTL and model differ")

@@ -19,7 +19,8 @@ NAME = "clocks"
 GRADE, SEED = 6, 1
 SOURCE = f"nextpnr, grade {GRADE}, seed {SEED}"
 #: What is kept of a configuration besides key, date and commit.
-FIGURES = ("clock_mhz", "dsp", "lut_sites", "ff", "ebr", "longest_path")
+SIZES = ("dsp", "lut_sites", "lut_cells", "ff", "ebr")
+FIGURES = ("clock_mhz", *SIZES, "longest_path")
 
 
 def key(config: Config) -> str:

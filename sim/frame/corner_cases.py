@@ -16,10 +16,10 @@ from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import illegal_spans
 from phong75.model.studies import corner_cases
-from phong75.model.studies.corner_cases import Case
+from phong75.model.studies.corner_cases import CornerCase
 from phong75.model.studies.random_frames import random_frame
 from phong75.sim.build import Bench
-from phong75.sim.frame.run_frame import Job, SimResult, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, SimResult, simulate_jobs
 
 #: Probabilities, in 1/256 per cycle, that the long run offers no span or takes no pixel.
 CHANCES = (0, 16, 64, 160)
@@ -32,7 +32,7 @@ POWER_UP = 75
 
 
 @dataclass
-class Row:
+class CornerCaseRow:
     """One row of the table.
 
     max_lsb, bound_lsb: largest error and its derived bound, LSB of a colour code; None if the case
@@ -55,7 +55,7 @@ class Row:
         return asdict(self) | {"verdict": "FAILED" if self.failures else "ok"}
 
 
-def judge(case: Case, results: list[SimResult], config: Config = DEFAULT) -> Row:
+def judge(case: CornerCase, results: list[SimResult], config: Config = DEFAULT) -> CornerCaseRow:
     """Compare the simulated `results` of `case` with the twin and with the error bound.
 
     All results are compared with the twin. Counters, the error and the case's own check are taken
@@ -90,34 +90,34 @@ def judge(case: Case, results: list[SimResult], config: Config = DEFAULT) -> Row
         failures += case.check(frame, first.pixels)
     if worst > bound:
         failures.append(f"the largest error is {worst:.4f} LSB, the bound {bound:.4f}")
-    return Row(
+    return CornerCaseRow(
         case.name, case.extreme, case.expected, len(first.pixels.x), worst, bound, mismatches,
         flagged, failures,
     )  # fmt: skip
 
 
-def run_cases(cases: list[Case], bench: Bench | None = None) -> list[Row]:
+def run_cases(cases: list[CornerCase], bench: Bench | None = None) -> list[CornerCaseRow]:
     """Simulate all `cases` twice, with zeros and with random register contents at power-up.
 
     Raises BuildError, SimulationError.
     """
     runs = [
-        simulate_jobs([Job(case.frame) for case in cases], bench=bench, power_up=power_up)
+        simulate_jobs([SimJob(case.frame) for case in cases], bench=bench, power_up=power_up)
         for power_up in (None, POWER_UP)
     ]
     return [judge(c, list(results)) for c, results in zip(cases, zip(*runs, strict=True),
                                                           strict=True)]  # fmt: skip
 
 
-def results(cases: list[Case]) -> list[SimResult]:
+def results(cases: list[CornerCase]) -> list[SimResult]:
     """Simulate `cases` once. Raises BuildError, SimulationError."""
-    return simulate_jobs([Job(case.frame) for case in cases])
+    return simulate_jobs([SimJob(case.frame) for case in cases])
 
 
-def scene_case(name: str, size: tuple[int, int] | None = None) -> Case:
+def scene_case(name: str, size: tuple[int, int] | None = None) -> CornerCase:
     """A bundled scene as a case. size: (width, height) in pixels, else the scene's own."""
     frame = front_end(load_scene(name, size)).frame
-    return Case(
+    return CornerCase(
         f"{name} {frame.width}×{frame.height}",
         f"a frame of {frame.width}×{frame.height} pixels in {len(frame.spans)} spans",
         "every pixel once, within the bound, one pixel per cycle",
@@ -126,12 +126,12 @@ def scene_case(name: str, size: tuple[int, int] | None = None) -> Case:
     )
 
 
-def shared_edges(meshes: int, progress: Callable[[float], None] | None = None) -> Row:
+def shared_edges(meshes: int, progress: Callable[[float], None] | None = None) -> CornerCaseRow:
     """The row of `meshes` random triangulations: no gap, no pixel twice (model only)."""
     counts = corner_cases.shared_edges(meshes, progress=progress)
     faults = (("gaps", "missing"), ("doubles", "drawn twice"), ("outside", "outside"))
     failures = [f"{counts[key]} pixels {fault}" for key, fault in faults if counts[key]]
-    return Row(
+    return CornerCaseRow(
         "shared edges",
         f"{counts['meshes']} random triangulations of rectangles, {counts['triangles']} triangles",
         "every pixel of each rectangle once, no other pixel",
@@ -139,7 +139,7 @@ def shared_edges(meshes: int, progress: Callable[[float], None] | None = None) -
     )  # fmt: skip
 
 
-def long_run(spans: int, seed: int = 75) -> Row:
+def long_run(spans: int, seed: int = 75) -> CornerCaseRow:
     """The row of `spans` random spans, in frames of PIECE spans.
 
     Each frame is simulated twice with random pauses of spans and pixels: first up to a reset at a
@@ -155,13 +155,13 @@ def long_run(spans: int, seed: int = 75) -> Row:
         )
         for stop in (int(rng.integers(1, 2 * count)), 0):
             jobs.append(
-                Job(
+                SimJob(
                     frame, idle=int(rng.choice(CHANCES)), stall=int(rng.choice(CHANCES)),
                     seed=int(rng.integers(1, 1 << 31)), stop_after=stop, reset_first=not stop,
                 )
             )  # fmt: skip
     results = simulate_jobs(jobs)
-    row = Row(
+    row = CornerCaseRow(
         "long run",
         f"{spans} spans with random pauses of spans and of pixels, {len(jobs) // 2} random resets",
         "every pixel once, in order, under all pauses; a frame after a reset is complete",
@@ -171,7 +171,7 @@ def long_run(spans: int, seed: int = 75) -> Row:
         *[iter(zip(results, jobs, strict=True))] * 2, strict=True
     ):
         row.failures += _prefix(interrupted, job.frame)
-        frame_row = judge(Case(row.case, "", "", job.frame), [complete])
+        frame_row = judge(CornerCase(row.case, "", "", job.frame), [complete])
         row.pixels += frame_row.pixels
         row.mismatches += frame_row.mismatches
         row.zero_normals += frame_row.zero_normals

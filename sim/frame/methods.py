@@ -27,7 +27,7 @@ from phong75.model.studies.methods import FRAMES, Point
 from phong75.model.twin import Pixels
 from phong75.sim.build import Bench
 from phong75.sim.design import BUILD
-from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 
 FOLDER = BUILD / "sweep"
 
@@ -58,7 +58,7 @@ def _simulate(point: Point, frames: list[Frame], folder: Path) -> tuple[dict, li
             return counters, [Pixels(*column) for column in columns]
     except (OSError, ValueError, KeyError):
         pass
-    results = simulate_jobs([Job(frame) for frame in frames], config, bench)
+    results = simulate_jobs([SimJob(frame) for frame in frames], config, bench)
     pixels = [r.pixels for r in results]
     arrays = {}
     for k, p in enumerate(pixels):

@@ -60,7 +60,7 @@ class SimResult:
 
 
 @dataclass
-class Job:
+class SimJob:
     """A frame to simulate, and the conditions (see `FrameTB.run`).
 
     spans_path: the frame's span file, None to write one. reset_first: reset before the frame.
@@ -99,7 +99,7 @@ def body_offset(path: Path) -> int:
 
 
 def simulate_jobs(
-    jobs: list[Job], config: Config = DEFAULT, bench: Bench | None = None,
+    jobs: list[SimJob], config: Config = DEFAULT, bench: Bench | None = None,
     waves: Path | None = None, power_up: int | None = None,
     progress: Callable[[str], None] = silent,
 ):  # fmt: skip
@@ -166,4 +166,4 @@ def simulate(
     progress: Callable[[str], None] = silent,
 ) -> SimResult:  # fmt: skip
     """Simulate one frame whose span file is `spans_path`. Raises BuildError, SimulationError."""
-    return simulate_jobs([Job(frame, Path(spans_path))], config, progress=progress)[0]
+    return simulate_jobs([SimJob(frame, Path(spans_path))], config, progress=progress)[0]

@@ -13,7 +13,7 @@ module testbench #(
     parameter SPANS_FILE  = "sim/spans.hex",   // {last, span}
     parameter WRITES_FILE = "sim/writes.hex",  // {address, word}
     parameter PIXELS_FILE = "sim/pixels.hex",  // {last, pixel}
-    parameter FINISH      = 1                  // 0: leave it to the parent, which reads done, failed
+    parameter FINISH      = 1                  // 0: the parent reads done and failed
 );
 
   localparam SPAN_BITS       = 233;
@@ -21,15 +21,15 @@ module testbench #(
   localparam WORD_BITS       = 35;
   localparam COORDINATE_BITS = 12;
   localparam COLOUR_BITS     = 8;
-  localparam LATENCY         = 77;  // clocks from the first span taken to the first pixel offered
+  localparam LATENCY         = 77;  // cycles from the first span taken to the first pixel offered
   localparam SPANS           = 635;  // in the frame
   localparam WRITES          = 276;
   localparam PIXELS          = 872;
   localparam ZERO_NORMALS    = 0;  // pixels that the pipeline reports as zero vectors
 
   localparam PIXEL_BITS = 2 * COORDINATE_BITS + 3 * COLOUR_BITS;
-  localparam PATIENCE   = 10000;  // clocks without a pixel after which the run is given up
-  localparam QUIET      = 300;    // clocks after the frame in which no pixel may come
+  localparam PATIENCE   = 10000;  // cycles without a pixel after which the run is given up
+  localparam QUIET      = 300;    // cycles after the frame in which no pixel may come
   localparam LAST_WRITE = WRITES > 0 ? WRITES - 1 : 0;  // the file has one word at least
 
   // ---- stimulus and expected pixels ----
@@ -74,21 +74,21 @@ module testbench #(
   // ---- control, set at falling edges; everything else changes at rising edges ----
   reg running;         // spans are offered, pixels are taken
   reg comparing;       // 0: what comes is dropped
-  reg [7:0] idle;      // of 256: a clock in which no new span is offered
-  reg [7:0] stall;     // of 256: a clock in which no pixel is taken
+  reg [7:0] idle;      // of 256: a cycle in which no new span is offered
+  reg [7:0] stall;     // of 256: a cycle in which no pixel is taken
   reg done, failed;
 
   integer next_span;   // the next to be offered
   integer next_pixel;  // the next to come
-  integer clocks;      // since the first span was taken
-  integer first_at;    // clocks at the first pixel offered
-  integer last_at;     // clocks at the last pixel taken
+  integer cycles;      // since the first span was taken
+  integer first_at;    // cycles at the first pixel offered
+  integer last_at;     // cycles at the last pixel taken
   integer zeros;       // zero normals reported
-  integer waited;      // clocks since a pixel was taken
+  integer waited;      // cycles since a pixel was taken
   integer total;       // pixels compared in all runs
   integer k;
   reg started;         // a span was taken
-  reg offered;         // a pixel waited in the last clock
+  reg offered;         // a pixel waited in the last cycle
   reg [PIXEL_BITS:0] held;  // that pixel
   reg [31:0] random;
 
@@ -101,7 +101,7 @@ module testbench #(
   wire [PIXEL_BITS:0] expected = pixels[next_pixel<PIXELS?next_pixel : 0];
 
   // Report the first failure; what follows from it is of no interest.
-  task fail;
+  task automatic fail;
     begin
       failed = 1'b1;
       done = 1'b1;
@@ -120,7 +120,7 @@ module testbench #(
       pixel_ready <= 1'b0;
       next_span <= 0;
       next_pixel <= 0;
-      clocks <= 0;
+      cycles <= 0;
       first_at <= 0;
       last_at <= 0;
       zeros <= 0;
@@ -138,11 +138,11 @@ module testbench #(
       end
       pixel_ready <= random[7:0] >= stall;
 
-      // Clocks are counted from the first span taken.
+      // Cycles are counted from the first span taken.
       started <= started | (span_valid & span_ready);
-      if (started) clocks <= clocks + 1;
-      if (pixel_valid & (first_at == 0)) first_at <= clocks + 1;
-      if (take) last_at <= clocks + 1;
+      if (started) cycles <= cycles + 1;
+      if (pixel_valid & (first_at == 0)) first_at <= cycles + 1;
+      if (take) last_at <= cycles + 1;
       if (zero_normal) zeros <= zeros + 1;
       waited <= take ? 0 : waited + 1;
 
@@ -181,7 +181,7 @@ module testbench #(
                  next_pixel);
         fail;
       end else if (waited >= PATIENCE) begin
-        $display("FAIL no pixel came in %0d clocks; %0d of %0d did", PATIENCE, next_pixel, PIXELS);
+        $display("FAIL no pixel came in %0d cycles; %0d of %0d did", PATIENCE, next_pixel, PIXELS);
         fail;
       end
     end
@@ -192,15 +192,15 @@ module testbench #(
   end
 
   // ---- what is done in turn ----
-  task pulse_reset(input integer cycles);
+  task automatic pulse_reset(input integer length);
     begin
       reset = 1'b1;
-      repeat (cycles) @(negedge clk);
+      repeat (length) @(negedge clk);
       reset = 1'b0;
     end
   endtask
 
-  task write_registers;
+  task automatic write_registers;
     begin
       for (k = 0; k < WRITES; k = k + 1) begin
         @(negedge clk) write_enable = 1'b1;
@@ -212,7 +212,7 @@ module testbench #(
   endtask
 
   // The whole frame; idle_chance, stall_chance: of 256.
-  task run(input [7:0] idle_chance, input [7:0] stall_chance);
+  task automatic run(input [7:0] idle_chance, input [7:0] stall_chance);
     begin
       @(negedge clk) running = 1'b1;
       comparing = 1'b1;
@@ -227,10 +227,10 @@ module testbench #(
       end
       if (~done & (idle_chance == 0) & (stall_chance == 0)) begin
         if (first_at != LATENCY) begin
-          $display("FAIL the first pixel came after %0d clocks, expected %0d", first_at, LATENCY);
+          $display("FAIL the first pixel came after %0d cycles, expected %0d", first_at, LATENCY);
           fail;
         end else if (last_at != LATENCY + PIXELS - 1) begin
-          $display("FAIL %0d pixels took %0d clocks, expected %0d", PIXELS, last_at,
+          $display("FAIL %0d pixels took %0d cycles, expected %0d", PIXELS, last_at,
                    LATENCY + PIXELS - 1);
           fail;
         end
@@ -242,7 +242,7 @@ module testbench #(
   endtask
 
   // A frame that stops with pixels on their way.
-  task break_off;
+  task automatic break_off;
     begin
       @(negedge clk) running = 1'b1;
       comparing = 1'b0;

@@ -8,7 +8,7 @@ from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
 from phong75.scripts import netlist, recorded
 from phong75.sim.design import BUILD
-from phong75.sim.frame.run_frame import Job, simulate_jobs
+from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 
 
 def test_resources_and_a_frame_in_ecp5_cells():
@@ -26,7 +26,7 @@ def test_resources_and_a_frame_in_ecp5_cells():
     two_sided.two_sided = True
     frames = [frame, two_sided]
     for given, result in zip(
-        frames, simulate_jobs([Job(f) for f in frames], bench=made), strict=True
+        frames, simulate_jobs([SimJob(f) for f in frames], bench=made), strict=True
     ):
         compared = metrics.compare(twin.render(given), result.pixels)
         assert compared.mismatches == 0 and result.stall_cycles == 0, compared.first

@@ -43,7 +43,7 @@ def point(method, label, cycles, rms, **more):
         "clock_mhz": 200, "clock_source": "stated", "frame_us": cycles / 200, "max_lsb": 2 * rms,
         "rms_lsb": rms, "p999_lsb": 1.5 * rms, "mean_lsb": rms / 2,
         "correctly_rounded": 1 - rms / 9, "psnr_db": 50, "simulate_s": 1, "model_s": 0.5,
-        "dsp": "", "lut_sites": "", "ff": "", "ebr": "", "pareto": 1,
+        "dsp": "", "lut_cells": "", "ff": "", "ebr": "", "pareto": 1,
     } | more  # fmt: skip
 
 
@@ -145,7 +145,7 @@ def test_the_numbers_are_those_of_the_runs(html, build):
 def test_what_is_missing_names_its_command(tmp_path, monkeypatch):
     monkeypatch.setattr(recorded, "FOLDER", tmp_path)
     html = report.page(tmp_path)
-    for target in ("run", "results", "sweep", "tessellation", "stability", "synth"):
+    for target in ("run", "scenes", "sweep", "tessellation", "stability", "synth"):
         command = f"make {target}"
         assert f"{target}:" in (PACKAGE / "Makefile").read_text()
         assert f"Not run yet: <code>{command}" in html, command
@@ -199,7 +199,7 @@ def test_the_page_of_all_scenes_weighs_less_than_5_mb(build, tmp_path):
     shutil.copytree(build, tmp_path, dirs_exist_ok=True)
     for name in bundled_scenes():
         out = tmp_path / name
-        assert run_scene.main([f"--scene={name}", f"--out={out}"], simulate=without_rtl) == 0
+        run_scene.run(run_scene.request(name, out=out), without_rtl, Steps())
         for technique in ("gouraud", "flat"):
             config = TECHNIQUES[technique]
             frame = front_end(load_scene(name, None, config), config).frame
