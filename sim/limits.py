@@ -31,7 +31,7 @@ def _members(session: int) -> Iterator[tuple[int, float]]:
             fields = stat.read_text(errors="replace").rpartition(")")[2].split()
         except OSError:  # it ended meanwhile
             continue
-        if int(fields[3]) == session:
+        if int(fields[3]) == session and fields[0] not in "XZ":  # not dead already
             yield int(stat.parent.name), sum(map(int, fields[11:15])) / _TICK
 
 
@@ -41,10 +41,12 @@ def cpu_seconds(session: int) -> float:
 
 
 def _end(session: int) -> None:
-    """Kill all of `session`, whatever process groups it has."""
-    for process, _ in _members(session):
-        with suppress(ProcessLookupError):
-            os.kill(process, signal.SIGKILL)
+    """Kill all of `session`, whatever process groups it has, and wait until they are gone."""
+    while members := list(_members(session)):
+        for process, _ in members:
+            with suppress(ProcessLookupError):
+                os.kill(process, signal.SIGKILL)
+        time.sleep(0.01)  # a busy machine takes a moment to end them
 
 
 @dataclass(frozen=True)
