@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from phong75.model.config import DEFAULT, TECHNIQUES, Config
+from phong75.scripts import console
 from phong75.sim import build, design
 from phong75.sim.build import BuildError
 
@@ -58,19 +59,21 @@ def main() -> int:
     benches = [file for folder in BENCHES for file in sorted(folder.glob("*.v"))]
     headers = design.headers()
     models = sorted((design.SIM / "ecp5").glob("*.v"))  # their names and style are Lattice's
-    said = [verilator(source) for source in designs + benches + models]
-    said += [verilator(design.module_file(design.TOP), config) for config in CONFIGS]
-    said.append(
+    complaints = [verilator(source) for source in designs + benches + models]
+    complaints += [verilator(design.module_file(design.TOP), config) for config in CONFIGS]
+    complaints.append(
         tool("verible-verilog-lint", f"--rules_config={_RULES}", *designs, *headers, *benches)
     )
-    said.append(tool("ruff", "check", "--quiet", "--output-format=concise"))
-    said.append(tool("ruff", "format", "--check", "--quiet"))
-    said.append(tool("lint-imports", "--no-logo", "--cache-dir", design.BUILD / "import_linter"))
-    said.append(tool("mypy", "--cache-dir", design.BUILD / "mypy"))
-    said = [text.strip() for text in said if text.strip()]
-    for text in said:
-        print(text, file=sys.stderr)
-    return 1 if said else 0
+    complaints.append(tool("ruff", "check", "--quiet", "--output-format=concise"))
+    complaints.append(tool("ruff", "format", "--check", "--quiet"))
+    complaints.append(
+        tool("lint-imports", "--no-logo", "--cache-dir", design.BUILD / "import_linter")
+    )
+    complaints.append(tool("mypy", "--cache-dir", design.BUILD / "mypy"))
+    complaints = [text.strip() for text in complaints if text.strip()]
+    for text in complaints:
+        console.note(text)
+    return 1 if complaints else 0
 
 
 if __name__ == "__main__":

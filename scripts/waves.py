@@ -76,7 +76,7 @@ def save_file(wave: Waveform, module: str, config: Config) -> str:
         shown = True
         groups += _module_groups(scope, leaf, outside)
     if not shown:
-        raise _unknown(module)
+        raise InputError(f"configuration {config.name} has no {module}")
     # With both names GTKWave finds the waveform beside the save file, wherever it is started.
     save = wave.path.with_suffix(".gtkw")
     lines = [f'[dumpfile] "{wave.path.resolve()}"', f'[savefile] "{save.resolve()}"', *_view(wave)]

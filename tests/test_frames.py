@@ -34,7 +34,7 @@ def test_bundled_scene(scene):
         assert done.pixels.last.sum() == 1 and done.pixels.last[-1], what
     now = scene_results.figures({scene: measured})["scenes"][scene]
     for new, kept in zip(now, recorded.figures("scenes")["scenes"][scene], strict=True):
-        assert not differences(new, kept), "the record is old: make scenes"
+        assert not differences(new, kept), "the record is old: make scenes RECORD=1"
 
 
 def test_each_dot_is_shaded_once():

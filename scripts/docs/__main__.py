@@ -10,6 +10,8 @@ from __future__ import annotations
 import subprocess
 import sys
 
+from phong75.model.frame import InputError
+from phong75.scripts import console
 from phong75.scripts.docs import blocks, timing
 from phong75.scripts.docs.contents import FIGURES, TABLES
 from phong75.sim.design import BUILD, PACKAGE
@@ -45,19 +47,19 @@ def build() -> int:
 
 
 def main() -> int:
-    """All of it; returns the exit code."""
+    """All of it; returns the exit code. Raises InputError, OSError."""
     try:
-        for name in write():
-            print(f"changed: {name}")
-    except (blocks.MarkerError, OSError, ValueError) as error:
-        print(f"Error: {error}", file=sys.stderr)
-        return 2
-    print("building the pages ...", file=sys.stderr, flush=True)
+        changed = write()
+    except (blocks.MarkerError, ValueError) as error:
+        raise InputError(str(error)) from None
+    for name in changed:
+        console.say(f"changed: {name}")
+    console.phase("building the pages")
     if code := build():
         return code
-    print(f"{BUILD / 'docs' / 'index.html'}")
-    return 0
+    console.say(console.shown(BUILD / "docs" / "index.html"))
+    return console.GOOD
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(console.exit_code(main))
