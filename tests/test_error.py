@@ -224,9 +224,10 @@ def test_differences_within_their_bounds(length, angle, bits):
 
 
 @pytest.mark.parametrize("bits", [12, 14, 16, 18])
-def test_differences_see_no_highlight_cross_h(bits):
-    """|N x h|**2 = |N|**2 just below a power of 4, and codes of h that are longer than 1: the other
-    square must not leave the word that the first is aligned to."""
+def test_quadratic_spans_at_right_angles_to_h(bits):
+    """Normals at right angles to h, for which the square of N x h equals |N|**2, just below a power
+    of 4, and codes of h that are longer than 1: the square must fit the word that |N|**2 is
+    aligned to."""
     config, longer = CONFIGS[f"quadratic_spans_{bits}"], 0
     for angle in np.linspace(1.7, 3.1, 60):
         half = half_vector_codes(np.array([np.sin(angle), 0, np.cos(angle)]), config)
