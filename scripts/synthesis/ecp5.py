@@ -107,8 +107,8 @@ def _run(tool: str, arguments: list[str], log: Path) -> None:
         except subprocess.TimeoutExpired:
             raise SynthesisError(f"{tool} took more than {_TIMEOUT_S} s ({log})") from None
     if done.returncode:
-        said = re.findall(r"^(?:.*: )?ERROR: .*", log.read_text(errors="replace"), re.MULTILINE)
-        raise SynthesisError(f"{tool} failed: {said[0] if said else 'no message'} ({log})")
+        errors = re.findall(r"^(?:.*: )?ERROR: .*", log.read_text(errors="replace"), re.MULTILINE)
+        raise SynthesisError(f"{tool} failed: {errors[0] if errors else 'no message'} ({log})")
 
 
 def _kept(record: Path, key: str, make: Callable[[], dict]) -> dict:
