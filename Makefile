@@ -29,7 +29,7 @@ variables_formal := RECORD
 variables_activity := RECORD
 variables_waves := MODULE CONFIG
 variables_bench := RECORD
-variables_export := CONFIG OUT SCENE SIZE
+variables_export := CONFIG OUT SCENE SIZE PRUNE
 variables_mutate := FILES KIND SAMPLE AGAIN RECORD
 variables_coverage := RECORD
 variables_icarus := RECORD
@@ -128,7 +128,7 @@ bench: setup
 
 export: setup
 	@$(PHONG75) export $(config) $(call option,--out,OUT) $(call option,--scene,SCENE) \
-	  $(call option,--size,SIZE)
+	  $(call option,--size,SIZE) $(call option,--prune,PRUNE)
 
 configs: setup
 	@$(PHONG75) configs

@@ -345,9 +345,7 @@ def export(
         ),
     ] = None,
     size: options.AnySize = None,
-    prune: Annotated[
-        bool, typer.Option("--prune", help="Leave out what the SCENE at this size does not need.")
-    ] = False,
+    prune: options.Prune = "",
     header: Annotated[
         bool, typer.Option("--header", help="Renew the generated files that the checkout keeps.")
     ] = False,

@@ -75,6 +75,15 @@ def parse_count(name: str, value: str | int, least: int, most: int) -> int:
     return int(text)
 
 
+#: What --prune takes in place of a scene: the one that is run, or shown.
+SELF = "self"
+
+
+def prune_scene(text: str) -> str:
+    """What --prune asks for: "" for nothing left out (also 0), SELF (also 1), else a scene."""
+    return {"0": "", "1": SELF}.get(text, text)
+
+
 def parse_grade(value: str | int) -> int:
     """The speed grade of the chip in `value`, a text or the default. Raises InputError."""
     from phong75.model.frame import InputError
@@ -196,7 +205,7 @@ Prune = Annotated[
     typer.Option(
         "--prune",
         metavar="SCENE",
-        help="Build without what this SCENE does not need; `self`: the one that is run.",
+        help="Build without what this SCENE does not need; `self`: the one that is run or shown.",
         autocompletion=scenes,
     ),
 ]

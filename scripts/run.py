@@ -73,7 +73,7 @@ def request(
         fps=fps,
         clock_hz=options.whole(clock_mhz * 1e6),
         out=out or Path("build", Path(spans or scene).stem + suffix),
-        prune={"0": "", "1": "self"}.get(prune, prune),
+        prune=options.prune_scene(prune),
     )
 
 
@@ -127,7 +127,7 @@ def _built(request: RunRequest, frame: Frame) -> Config:
     config = request.config
     if not request.prune:
         return config
-    if request.prune != "self":
+    if request.prune != options.SELF:
         scene = load_scene(request.prune, (frame.width, frame.height), config)
         frame = front_end(scene, config).frame
     return pruning.prune(frame, config)[0]

@@ -338,7 +338,8 @@ def test_a_folder_that_is_no_export_is_left_alone(tmp_path):
         (["--config", "nonesuch", "--out", "x"], "there is no `nonesuch`"),
         (["--out", "x", "--size", "48"], "--size is `48`"),
         (["--out", "x", "--prefix", "7_"], "the prefix `7_` is not the beginning"),
-        (["--out", "x", "--prune"], "pruning needs a scene"),
+        (["--out", "x", "--prune", "self"], "pruning needs a scene"),
+        (["--out", "x", "--prune", "cone", "--scene", "torus"], "leave out --scene torus"),
         (["--out", "x", "--scene", "nonesuch"], "nonesuch"),
     ],
 )

@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+import phong75
+from phong75 import model
 from phong75.model.twin import NO_TWIN
 from phong75.sim import design
 from phong75.sim.design import PACKAGE
@@ -110,3 +112,7 @@ def test_the_linter_finds_an_import_against_the_layers(file, tmp_path):
     assert lint_imports(tmp_path, settings) == ""
     (tmp_path / file).write_text((tmp_path / file).read_text() + FORBIDDEN[file] + "\n")
     assert "BROKEN" in lint_imports(tmp_path, settings)
+
+
+def test_the_package_offers_what_the_model_does():
+    assert set(phong75.__all__) == {*model.__all__, "__version__"}

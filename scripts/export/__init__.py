@@ -26,7 +26,7 @@ from phong75.model.scene_to_frame import front_end
 from phong75.model.twin.core.register_map import unsupported_write
 from phong75.model.twin.pruning.span_guard import span_guard
 from phong75.model.verilog import header
-from phong75.scripts import console
+from phong75.scripts import console, options
 from phong75.scripts.export import documents, stimulus, verilog
 from phong75.sim import design
 from phong75.sim.elaborate import instances
@@ -287,11 +287,20 @@ def renew() -> int:
 
 def main(
     config: Config, out: Path | None, prefix: str | None, scene: str | None,
-    size: tuple[int, int] | None, prune: bool,
+    size: tuple[int, int] | None, prune: str,
 ) -> int:  # fmt: skip
-    """Export, and say where; returns the exit code. Arguments and errors as for `export`."""
+    """Export, and say where; returns the exit code. Arguments and errors as for `export`.
+
+    prune: as for --prune: the scene to prune to, which the stimulus then shows, or options.SELF for
+    the `scene` that is given.
+    """
     if out is None:
         raise InputError("--out is missing: the folder to write")
-    names = export(config, out, prefix, scene, size, prune)
+    prune = options.prune_scene(prune)
+    if prune and prune != options.SELF:
+        if scene not in (None, prune):
+            raise InputError(f"--prune {prune} shows that scene: leave out --scene {scene}")
+        scene = prune
+    names = export(config, out, prefix, scene, size, bool(prune))
     console.say(f"{out}: {len(names)} files; README.md says how to simulate and integrate them")
     return console.GOOD

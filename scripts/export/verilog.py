@@ -36,7 +36,6 @@ _GAP = r"(?:\s+//)?\s+"
 _ELSEWHERE = (
     (rf"(PHONG_\w+){_GAP}in{_GAP}latency\.vh;{_GAP}\d+{_GAP}by{_GAP}default", r"\1"),
     (rf"see{_GAP}latency\.vh;{_GAP}(\d+)", r"\1"),
-    (r"the PHONG_FIELD_ macros of the configuration", "in ports.md"),
 )
 _WORDS_A_LINE = 6
 
