@@ -31,8 +31,8 @@ def recorded_durations() -> dict[str, float]:
 class Progress:
     """Counts tests and prints, every PROGRESS_S seconds, what runs and how long is left."""
 
-    def __init__(self, reporter, durations: dict[str, float]):
-        self._reporter, self._durations = reporter, durations
+    def __init__(self, durations: dict[str, float]):
+        self._durations = durations
         self._typical = sorted(durations.values())[len(durations) // 2] if durations else 0.1
         self._lock = threading.Lock()
         self._running: dict[str, float] = {}
@@ -112,8 +112,7 @@ def pytest_configure(config):
     config.addinivalue_line("markers", "fast: short when it was recorded; `make check`")
     if hasattr(config, "workerinput") or not config.getoption("--progress"):
         return
-    reporter = config.pluginmanager.get_plugin("terminalreporter")
-    config.stash[_PROGRESS] = progress = Progress(reporter, recorded_durations())
+    config.stash[_PROGRESS] = progress = Progress(recorded_durations())
     config.pluginmanager.register(progress, "phong75-progress")
 
 
