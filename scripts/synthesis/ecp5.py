@@ -462,9 +462,9 @@ def technology_text(config: Config) -> str:
 
 
 def design_key(config: Config, grade: int, seed: int, tools: dict[str, str] | None = None) -> str:
-    """What a routed clock of `config` depends on, as a hash: the elaborated design, the technology's
-    primitives, how the design is synthesized and routed, the tools ({package: version}, None: those
-    installed), the limits of the blocks. Raises BuildError, SynthesisError.
+    """What a routed clock of `config` depends on, as a hash: the elaborated design, the primitives
+    of the technology, how the design is synthesized and routed, the tools ({package: version},
+    None: those installed), the limits of the blocks. Raises BuildError, SynthesisError.
 
     For a record that is kept for long. The keys of build/synth go by the files, so that any edit of
     any of them ends what is kept there; this key stays the same where only comments and blanks,
