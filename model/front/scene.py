@@ -7,7 +7,8 @@ value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All
     size = [640, 480]               # pixels
     background = [0.0, 0.0, 0.0]    # red, green, blue, 0 to 1
     two_sided = false               # light both sides of surfaces, cull no back faces
-    interpolation = "linear"        # as in the paper; or "normalized_edges"
+    interpolation = "linear"        # as in the paper; or "normalized_edges", or "quadratic",
+                                    # "quadratic_vlachos", "quadratic_exact" (`mid_edge_normals`)
 
     [light]
     direction = [-0.5, 0.6, 1.0]    # towards the light, any length
@@ -60,7 +61,7 @@ import numpy as np
 from phong75.model.arrays import ArrayLike, Reals
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import InputError
-from phong75.model.front import shapes
+from phong75.model.front import mid_edge_normals, shapes
 from phong75.model.front.camera import (
     DEFAULT_DIRECTION,
     DEFAULT_FOV,
@@ -77,7 +78,7 @@ from phong75.model.front.mesh import MESH_SUFFIXES, Mesh, is_consistent, load_me
 SCENES = Path(__file__).parent.parent / "scenes"
 DEFAULT_SIZE = (640, 480)
 DEFAULT_BACKGROUND = (0.05, 0.06, 0.08)
-INTERPOLATIONS = ("linear", "normalized_edges")
+INTERPOLATIONS = ("linear", "normalized_edges", *mid_edge_normals.RULES)
 
 SHAPES: dict[str, Callable[..., Mesh]] = {
     "sphere": shapes.sphere,
@@ -132,7 +133,8 @@ class Scene:
 
     width, height: pixels. background: red, green, blue, 0 to 1. light: float64[3], unit vector
     towards the light, scene axes. two_sided: shade both sides of surfaces, cull no back faces.
-    interpolation: "linear" (the paper's) or "normalized_edges" (see `interpolation`).
+    interpolation: "linear" (the paper's), "normalized_edges" (see `interpolation`) or one of
+    `mid_edge_normals.RULES`.
     """
 
     name: str
