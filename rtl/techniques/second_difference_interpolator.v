@@ -14,7 +14,7 @@
 
 module second_difference_interpolator #(
     parameter NORMAL_BITS = `PHONG_NORMAL_BITS,
-    parameter EXTRA_BITS  = `PHONG_BEND_FRACTION_BITS  // fraction bits of `bend` beyond `start`'s
+    parameter EXTRA_BITS  = `PHONG_BEND_FRACTION_BITS  // of `bend` beyond `start`; at least 4 less
 ) (
     input wire clk,
 
@@ -34,7 +34,7 @@ module second_difference_interpolator #(
 
   localparam BITS = NORMAL_BITS + EXTRA_BITS;
   localparam SIGN = BITS - 1;
-  localparam LOW_BITS = BITS / 2;  // more than EXTRA_BITS
+  localparam LOW_BITS = BITS / 2;
   localparam HIGH_BITS = BITS - LOW_BITS;
   localparam KEPT_BITS = LOW_BITS - EXTRA_BITS;  // of the low half, in `value`
 
