@@ -97,13 +97,14 @@ BY_HAND = {
     "flat": TECHNIQUES["flat"],
 }
 
-#: The fields of `Config` that `prune` decides on.
+#: The fields of `Config` that `prune` decides on. Where `normal_order` is 2, `prune` decides on
+#: that as well; the default configuration is without it.
 FEATURES = (
     "specular", "power_function", "power_bypass", "log_octaves", "weight_function", "diffuse",
     "ambient", "channels", "two_sided", "constant_half_vector", "constant_exponent",
-    "constant_weight", "constant_ambient", "constant_diffuse", "constant_shift", "normal_order",
-    "interpolate_x", "interpolate_y", "interpolate_z", "idle_step_bits", "idle_material_bits",
-    "idle_x_bits", "idle_y_bits",
+    "constant_weight", "constant_ambient", "constant_diffuse", "constant_shift", "interpolate_x",
+    "interpolate_y", "interpolate_z", "idle_step_bits", "idle_material_bits", "idle_x_bits",
+    "idle_y_bits",
 )  # fmt: skip
 
 
@@ -266,12 +267,11 @@ class _Pruner:
             "leading zeros of the components, their shifters", without=tuple(shifts.tolist()),
         )  # fmt: skip
         bent = int(self.spans["bend"].any(axis=1).sum())
-        self.decide(
-            "normal_order", config.normal_order == 2 and bent,
-            f"the bend is other than 0 in {bent} spans" if config.normal_order == 2
-            else "the spans carry no bend",
-            "second differences in the interpolators, and words of the span", without=1,
-        )  # fmt: skip
+        if config.normal_order == 2:
+            self.decide(
+                "normal_order", bent, f"the bend is other than 0 in {bent} spans",
+                "second differences in the interpolators, and words of the span", without=1,
+            )  # fmt: skip
         moves = (self.facts.steps != 0) | (self.facts.bends != 0)
         for axis, name in enumerate("xyz"):
             moving = int(moves[:, axis].sum())
@@ -284,7 +284,7 @@ class _Pruner:
         """Top bits of words that are the same in the whole frame."""
         config, f, spans = self.config, self.facts, self.spans
         steepest = int(np.max(np.where(f.steps < 0, ~f.steps, f.steps), initial=0))
-        if "normal_order" in self.chosen:
+        if config.normal_order == 1 or "normal_order" in self.chosen:
             idle = _idle(steepest, config.normal.bits - 1)
             why = f"steps take {steepest.bit_length() + 1} of {config.normal.bits} bits"
         else:
