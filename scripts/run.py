@@ -13,7 +13,7 @@ import os
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -254,7 +254,9 @@ def _explain(stimulus: Stimulus, comparison: metrics.Comparison, config: Config)
         console.note(f"left out, but needed: {reason}")
     if comparison.first:
         console.note(_where(comparison.first))
-        by_technique = config in TECHNIQUES.values()  # `locate` knows the stages of these
+        # `locate` knows the stages of these, with normals of either order.
+        linear = replace(config, name=config.technique, normal_order=1)
+        by_technique = config in TECHNIQUES.values() or linear == replace(DEFAULT, name="phong")
         if comparison.first.expected and stimulus.built == config and by_technique:
             console.note(locate(stimulus.frame, comparison.first.index, config))
 
