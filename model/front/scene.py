@@ -76,6 +76,7 @@ from phong75.model.front.camera import (
 from phong75.model.front.mesh import MESH_SUFFIXES, Mesh, is_consistent, load_mesh
 
 SCENES = Path(__file__).parent.parent / "scenes"
+TECHNIQUE_SCENES = SCENES / "techniques"
 DEFAULT_SIZE = (640, 480)
 DEFAULT_BACKGROUND = (0.05, 0.06, 0.08)
 INTERPOLATIONS = ("linear", "normalized_edges", *mid_edge_normals.RULES)
@@ -161,6 +162,11 @@ def bundled_scenes() -> list[str]:
     return sorted(p.stem for p in SCENES.glob("*.toml"))
 
 
+def technique_scenes() -> list[str]:
+    """Sorted names of the bundled scenes that show a technique beyond the default configuration."""
+    return sorted(p.stem for p in TECHNIQUE_SCENES.glob("*.toml"))
+
+
 def load_scene(
     name_or_path: str | Path, size: tuple[int, int] | None = None, config: Config = DEFAULT
 ) -> Scene:
@@ -171,17 +177,19 @@ def load_scene(
     InputError.
     """
     name = str(name_or_path)
-    if name in bundled_scenes():
-        path = SCENES / f"{name}.toml"
+    bundled = [*bundled_scenes(), *technique_scenes()]
+    if name in bundled:
+        folder = TECHNIQUE_SCENES if name in technique_scenes() else SCENES
+        path = folder / f"{name}.toml"
     else:
         path = Path(name)
         if not path.is_file():
             if path.exists():
                 raise InputError(f"{name}: not a file")
-            close = difflib.get_close_matches(name, bundled_scenes(), 1)
+            close = difflib.get_close_matches(name, bundled, 1)
             hint = f"; did you mean {close[0]}?" if close else ""
             raise InputError(
-                f"{name}: no such file, nor a bundled scene ({', '.join(bundled_scenes())}){hint}"
+                f"{name}: no such file, nor a bundled scene ({', '.join(bundled)}){hint}"
             )
     suffix = path.suffix.lower()
     if suffix == ".toml":
