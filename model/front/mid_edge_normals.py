@@ -27,8 +27,8 @@ from phong75.model.front.mesh import Mesh, normalize, weld
 RULES = ("quadratic", "quadratic_vlachos", "quadratic_exact")
 
 #: Towards the outline the seen point runs away from the edge. From this cosine between normal and
-#: eye on (84 degrees), the distance stays what it is there.
-OUTLINE = 0.1
+#: eye on (78 degrees), the distance stays what it is there.
+OUTLINE = 0.2
 
 #: A direction in which the edges around a vertex say less than this share of what they say in the
 #: best one counts as unknown: the normal does not change along it.
