@@ -112,7 +112,8 @@ def _unsigned(integer: int, fraction: int) -> Any:
 class Config:
     """Formats, table sizes and features of one pipeline, in the order of the data.
 
-    Raises ValueError if a choice is not one of its names, or `channels` is neither 1 nor 3.
+    Raises ValueError if a choice is not one of its names, `channels` is neither 1 nor 3, or
+    `normal_order` is neither 1 nor 2, or 2 where no normal is interpolated.
     """
 
     name: str = "default"
@@ -124,6 +125,10 @@ class Config:
                 raise ValueError(f"{f.name} is `{value}`, not one of {', '.join(names)}")
         if self.channels not in (1, 3):
             raise ValueError(f"channels is {self.channels}, not 1 or 3")
+        if self.normal_order not in (1, 2):
+            raise ValueError(f"normal_order is {self.normal_order}, not 1 or 2")
+        if self.normal_order == 2 and (self.technique != "phong" or self.spans_carry_squares):
+            raise ValueError("normal_order is 2, but spans carry no normal")
 
     # -- technique ---------------------------------------------------------------------------------
     # phong interpolates normals, gouraud the intensities of vertices; flat holds one intensity per
@@ -133,6 +138,7 @@ class Config:
     # -- spans and pixels --------------------------------------------------------------------------
     coordinate_bits: int = 12  # x and y: pictures of up to 4096 x 4096
     normal: Format = _signed(1, 30)  # one component of the interpolated normal; also of its step
+    bend_fraction_bits: int = 12  # fraction bits of `bend` beyond those of `normal`
     material_bits: int = 4  # 16 materials
     colour_bits: int = 8  # code of one of red, green, blue
 
@@ -178,6 +184,7 @@ class Config:
     ambient: bool = True  # Cp d: a material with d other than 0
     channels: int = 3  # 1: red, green and blue are equal in all materials
     two_sided: bool = True  # |Zn| in place of Zn: a two-sided frame
+    normal_order: int = 1  # 2: normals are quadratic along a span (a scene with mid-edge normals)
     interpolate_x: bool = True  # a span along which the normal's x varies
     interpolate_y: bool = True
     interpolate_z: bool = True
@@ -225,6 +232,19 @@ class Config:
     def values(self) -> int:
         """How many values are interpolated along a span: x, y, z of a normal, or intensities."""
         return 3 if self.technique == "phong" else self.channels
+
+    @property
+    def bend(self) -> Format:
+        """The format of a bend, with `normal_order` 2: how much the step grows from pixel to pixel.
+
+        A rounded step is wrong by at most half an LSB of `normal`, which becomes (length - 1)/2 LSB
+        at the last pixel. A rounded bend becomes (length - 1)(length - 2)/4 LSB of this format
+        there. With as many further fraction bits as a coordinate has (12), that is less than
+        (length - 2)/4 LSB of `normal`, however long the span: half as much as the step's share.
+        """
+        return dataclasses.replace(
+            self.normal, fraction=self.normal.fraction + self.bend_fraction_bits
+        )
 
     @property
     def spans_carry_squares(self) -> bool:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,7 +16,8 @@ from phong75.model.config import Config
 #: pixel; both are codes of `Config.normal` (s1.30) in the light frame, where the light is along z.
 #: For Gouraud and flat shading, start and step are intensities S of red, green, blue in the same
 #: format: three equal ones for grey, and a step of 0 for flat shading. material: row of the
-#: material table. last: whether the span is the last one of the frame.
+#: material table. last: whether the span is the last one of the frame. bend: how much the step
+#: grows from pixel to pixel, in codes of `Config.bend` (s1.42); 0 unless normals are quadratic.
 SPAN_DTYPE = np.dtype(
     [
         ("x", np.int32),
@@ -26,6 +27,7 @@ SPAN_DTYPE = np.dtype(
         ("step", np.int64, 3),
         ("material", np.int32),
         ("last", np.bool_),
+        ("bend", np.int64, 3),
     ]
 )
 
@@ -115,13 +117,15 @@ class Frame:
 class ExactFrame:
     """A `Frame` before any rounding, in float64; row k belongs to `Frame.spans[k]`.
 
-    start, step: float64[n, 3], of the normal (unit at the vertices) or of the intensities S. eye:
-    float64[3], the unit vector u to the eye in the light frame. cp: float64[M, 3]; d: float64[M];
-    weight: float64[M, P]; exponent: float64[M]: of the materials, as in `MaterialTable.set`.
+    start, step, bend: float64[n, 3], of the normal (unit at the vertices) or of the intensities S.
+    eye: float64[3], the unit vector u to the eye in the light frame. cp: float64[M, 3]; d:
+    float64[M]; weight: float64[M, P]; exponent: float64[M]: of the materials, as in
+    `MaterialTable.set`.
     """
 
     start: Reals
     step: Reals
+    bend: Reals
     eye: Reals
     cp: Reals
     d: Reals
@@ -131,6 +135,13 @@ class ExactFrame:
     def __repr__(self) -> str:
         eye = ", ".join(f"{component:.3f}" for component in self.eye)
         return f"ExactFrame(spans: {len(self.start)}, eye: ({eye}))"
+
+
+def fitted(config: Config, frame: Frame) -> Config:
+    """`config` with what `frame` needs beyond it: second differences, where a span has a bend."""
+    if config.normal_order == 2 or not frame.spans["bend"].any():
+        return config
+    return replace(config, name=f"{config.name}_quadratic", normal_order=2)
 
 
 def half_vector_codes(eye: ArrayLike, config: Config) -> tuple[int, int]:

@@ -23,6 +23,9 @@ are start_x, start_y, start_z, step_x, step_y, step_z (`Config.normal`), x, y (`
 length (one bit more), material (`material_bits`) and last (1 bit). Zeros fill the record up to a
 power of two of bytes: 234 bits in 32 bytes with the default configuration.
 
+With `Config.normal_order` 2, bend_x, bend_y, bend_z (`Config.bend`) follow step_z: 366 bits in 64
+bytes with the other fields at their defaults.
+
 For Gouraud shading, x, y and z of start and step are red, green and blue; for grey there is x only.
 For flat shading there is no step. With `Config.spans_carry_squares`, six words of `squared` stand
 in place of x and y of start and step (see `phong75.model.quadratic_spans`).
@@ -60,6 +63,9 @@ FORMATS = (
     "weight_index_bits",
 )
 
+#: The same for `Config.normal_order` 2; a file without them is of order 1.
+ORDER_2_FORMATS = ("normal_order", "bend_fraction_bits")
+
 #: The largest exponent n that the hardware is specified for.
 MAX_EXPONENT = 128
 
@@ -82,6 +88,8 @@ def span_fields(config: Config) -> list[SpanField]:
     carried = ("start",) if config.technique == "flat" else ("start", "step")
     axes = "xyz"[: config.values]
     widths = [(f"{what}_{axis}", config.normal.bits) for what in carried for axis in axes]
+    if config.normal_order == 2:
+        widths += [(f"bend_{axis}", config.bend.bits) for axis in axes]
     if config.spans_carry_squares:
         widths = [(f"{what}_z", config.normal.bits) for what in carried]
         widths += [(name, config.squared.bits) for name in quadratic_spans.NAMES]
@@ -110,12 +118,39 @@ def record_bits(config: Config) -> int:
 
 def illegal_spans(frame: Frame, config: Config) -> Flags:
     """Which spans the RTL flags as illegal, bool[n]: a component of the normal leaves its format
-    between the first and the last pixel. The components are linear, so both ends decide.
+    between the first and the last pixel. With `normal_order` 2 also those in which the change from
+    one of these pixels to the next leaves the format (see `bent_beyond`).
     """
+    if config.normal_order == 2:
+        return bent_beyond(frame.spans, config)
+    # The components are linear, so both ends decide.
     steps = np.maximum(frame.spans["length"].astype(np.int64), 1) - 1
     end = frame.spans["start"] + steps[:, None] * frame.spans["step"]
     legal = config.normal.contains(frame.spans["start"]) & config.normal.contains(end)
     return np.any(~legal, axis=1)
+
+
+def bent_beyond(spans: Spans, config: Config) -> Flags:
+    """Which of `spans` (SPAN_DTYPE[n]) leave their formats with `normal_order` 2, bool[n].
+
+    The change from pixel k to the next is step + k bend, in `Config.bend`. The change is linear in
+    k, so the first and the last one decide. Where they are in the format, a component is a parabola
+    without overflow in int64: the first pixel, the last one, and those around the vertex decide.
+    """
+    extra = config.bend_fraction_bits
+    last = np.maximum(spans["length"].astype(np.int64), 1)[:, None] - 1
+    start, step = spans["start"] << extra, spans["step"] << extra
+    bend = np.where(last > 1, spans["bend"], 0)
+    final = step + np.maximum(last - 1, 0) * bend  # the change that leads to the last pixel
+    steep = (last > 0) & ~config.bend.contains(final)
+    bend = np.where(steep, 0, bend)
+    step = np.where(steep | (last == 0), 0, step)
+    vertex = np.where(bend != 0, -step // np.where(bend != 0, bend, 1), 0)
+    beyond = steep
+    for k in (0 * last, last, *(np.clip(vertex + near, 0, last) for near in (0, 1))):
+        value = start + k * step + (k * (k - 1) >> 1) * bend
+        beyond = beyond | ~config.bend.contains(value)
+    return np.any(beyond, axis=1)
 
 
 # -- writing ---------------------------------------------------------------------------------------
@@ -156,7 +191,7 @@ def pack(spans: Spans, config: Config, half_vector: tuple[int, ...] = (0, 0)) ->
     """
     words = np.zeros((len(spans), record_bits(config) // _WORD), np.uint64)
     if not np.array_equal(spans, _implied(spans, config)):
-        raise ValueError("a span has a step or colours that a record has no place for")
+        raise ValueError("a span has a step, bend or colours that a record has no place for")
     squares = {}
     if config.spans_carry_squares:
         squares = quadratic_spans.coefficients(spans, half_vector, config)
@@ -204,6 +239,8 @@ def _implied(spans: Spans, config: Config) -> Spans:
         spans[what][:, config.values :] = spans[what][:, :1]
     if config.technique == "flat":
         spans["step"] = 0
+    if config.normal_order == 1:
+        spans["bend"] = 0
     return spans
 
 
@@ -236,7 +273,8 @@ def _lines(header: dict[str, Any], offset: int) -> bytes:
 def _formats(config: Config) -> dict[str, Any]:
     """The `formats` of line 2."""
     values = config.as_dict()
-    return {name: values[name] for name in FORMATS}
+    names = FORMATS if config.normal_order == 1 else FORMATS + ORDER_2_FORMATS
+    return {name: values[name] for name in names}
 
 
 def _record(config: Config) -> dict[str, Any]:
@@ -312,6 +350,8 @@ def _frame(header: dict[str, Any], body: bytes, config: Config) -> Frame:
         given = formats.get(key)
         if given != expected:
             raise InputError(f"formats.{key} is {given}, but the pipeline is built for {expected}")
+    if config.normal_order == 1 and formats.get("normal_order", 1) != 1:
+        raise InputError("the spans have bends, but the pipeline is built without normal_order 2")
     if header["record"] != _record(config):
         raise InputError("record: the layout is not that of the pipeline")
     width = _integer("width", header["width"], 1, config.max_size)

@@ -52,6 +52,8 @@ def header(config: Config) -> str:
             lines.append(f"`define {name} {int(value)}")
     last = span_fields(config)[-1]  # the flag that the stream carries as s_axis_tlast, above it
     lines.append(f"`define PHONG_SPAN_BITS {last.lsb}")
+    values = next(field.lsb for field in span_fields(config) if field.name == "x")
+    lines.append(f"`define PHONG_VALUES_BITS {values}")
     lines.append(f"`define PHONG_RECORD_BITS {record_bits(config)}")
     lines += [f"`define PHONG_FIELD_{name.upper()} {index}" for name, index in FIELDS.items()]
     lines += [f"`define PHONG_{t.name.upper()}_TABLE {_constant(t)}" for t in tables(config)]

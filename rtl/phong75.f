@@ -25,7 +25,8 @@ core/specular_weight.v
 core/colour_channel.v
 core/pixel_fifo.v
 
-// what Phong's paper compares with: Gouraud's and flat shading
+// quadratic normals; and what Phong's paper compares with: Gouraud's and flat shading
+techniques/second_difference_interpolator.v
 techniques/gouraud_unit.v
 techniques/flat_unit.v
 techniques/intensity_code.v

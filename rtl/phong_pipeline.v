@@ -26,7 +26,8 @@ module phong_pipeline (
 
     // spans: {material, length, y, x, step z, y, x, start z, y, x}; start and step are s1.30;
     // length, y and x are in pixels. Gouraud shading: blue, green, red in place of z, y, x; flat
-    // shading: the same without step. For quadratic_spans see `values` of quadratic_unit.
+    // shading: the same without step. For quadratic normals and quadratic_spans see `values` of
+    // phong_unit and of quadratic_unit.
     input  wire                        s_axis_tvalid,
     output wire                        s_axis_tready,
     input  wire [`PHONG_SPAN_BITS-1:0] s_axis_tdata,

@@ -28,7 +28,10 @@ def _groups() -> dict[str, dict[str, Config]]:
         "older techniques": older,
         "with less built in": {n: c for n, c in by_hand.items() if n not in older},
         "with more built in": {
-            "hold_unlit": dataclasses.replace(DEFAULT, name="hold_unlit", hold_unlit=True)
+            "hold_unlit": dataclasses.replace(DEFAULT, name="hold_unlit", hold_unlit=True),
+            "quadratic_normals": dataclasses.replace(
+                DEFAULT, name="quadratic_normals", normal_order=2
+            ),
         },
         "points of `phong75 sweep`": {n: c for n, c in sweep.items() if n != DEFAULT.name},
     }

@@ -24,6 +24,7 @@ _OTHER_TECHNIQUES = [config for config in TECHNIQUES.values() if config is not D
 CONFIGS = (
     *_OTHER_TECHNIQUES,
     *(replace(c, name=f"grey_{c.name}", channels=1) for c in _OTHER_TECHNIQUES),
+    replace(DEFAULT, name="quadratic_normals", normal_order=2),
 )
 
 

@@ -115,11 +115,12 @@ def configuration(technique: str | None, config: str | None) -> Config:
 
 def scenes(incomplete: str) -> list[str]:
     """Bundled scenes, then files and folders, that begin with `incomplete`."""
-    from phong75.model.front.scene import bundled_scenes
+    from phong75.model.front.scene import bundled_scenes, technique_scenes
 
     files = sorted(glob.glob(f"{glob.escape(incomplete)}*")) if incomplete else []
     files = [f"{file}/" if Path(file).is_dir() else file for file in files]
-    return [name for name in bundled_scenes() if name.startswith(incomplete)] + files
+    bundled = [*bundled_scenes(), *technique_scenes()]
+    return [name for name in bundled if name.startswith(incomplete)] + files
 
 
 def configs(incomplete: str) -> list[str]:

@@ -32,7 +32,7 @@ from phong75.model import twin
 from phong75.model.analysis import metrics
 from phong75.model.analysis.pruning import BY_HAND, FEATURES, FeatureRow, prune
 from phong75.model.config import DEFAULT, Config
-from phong75.model.frame import Frame
+from phong75.model.frame import Frame, fitted
 from phong75.model.front.scene import bundled_scenes, load_scene
 from phong75.model.scene_to_frame import front_end
 from phong75.scripts import console, recorded
@@ -231,6 +231,6 @@ def main(scene: str, size: tuple[int, int] | None) -> int:
     """Show what `scene` needs; returns the exit code. Raises InputError."""
     with Steps().step("front_end") as step:
         frame = front_end(load_scene(scene, size), DEFAULT, step.done).frame
-    config, rows = prune(frame)
+    config, rows = prune(frame, fitted(DEFAULT, frame))
     console.show(feature_table(scene, rows, config))
     return console.GOOD

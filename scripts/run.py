@@ -13,7 +13,7 @@ import os
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +21,7 @@ import numpy as np
 from phong75.model import spans, twin
 from phong75.model.analysis import error_budget, metrics, pictures, pruning, reference, run_report
 from phong75.model.config import DEFAULT, TECHNIQUES, Config
-from phong75.model.frame import ExactFrame, Frame, InputError
+from phong75.model.frame import ExactFrame, Frame, InputError, fitted
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
 from phong75.scripts import console, options
@@ -81,12 +81,15 @@ def request(
 class Stimulus:
     """What the front end leaves: the frame, its file, and the configuration to build for it.
 
-    exact: the scene before any rounding; None where there is no scene behind the spans.
+    exact: the scene before any rounding; None where there is no scene behind the spans. full: the
+    configuration of the request, with what the frame needs beyond it; built: what is left of it
+    after pruning.
     """
 
     frame: Frame
     exact: ExactFrame | None
     degenerate_triangles: int
+    full: Config
     built: Config
     path: Path
 
@@ -114,17 +117,17 @@ def _front_end(request: RunRequest, folder: Path, steps: Steps) -> Stimulus:
             scene = load_scene(request.scene, request.size, config)
             front = front_end(scene, config, step.done)
             frame, exact, degenerate = front.frame, front.exact, front.degenerate_triangles
-        built = _built(request, frame)
+        config = fitted(config, frame)
+        built = _built(request, frame, config)
         if built.values != config.values and (reasons := pruning.missing(frame, built, config)):
             raise InputError(f"its spans have no place for this scene: {reasons[0]}")
         path = folder / "spans"
         spans.write_spans(path, frame, built)
-    return Stimulus(frame, exact, degenerate, built, path)
+    return Stimulus(frame, exact, degenerate, config, built, path)
 
 
-def _built(request: RunRequest, frame: Frame) -> Config:
-    """The configuration to build for `request`, whose frame is `frame`."""
-    config = request.config
+def _built(request: RunRequest, frame: Frame, config: Config) -> Config:
+    """The part of `config` to build for `request`, whose frame is `frame`."""
     if not request.prune:
         return config
     if request.prune != options.SELF:
@@ -133,8 +136,9 @@ def _built(request: RunRequest, frame: Frame) -> Config:
     return pruning.prune(frame, config)[0]
 
 
-def _twin(stimulus: Stimulus, config: Config, steps: Steps) -> tuple[twin.Pixels, int]:
+def _twin(stimulus: Stimulus, steps: Steps) -> tuple[twin.Pixels, int]:
     """The model's pixels by the full design, and in how many the pruned design's model differs."""
+    config = stimulus.full
     with steps.step("model") as step:
         expected = twin.render(stimulus.frame, config, step.done)
         if stimulus.built == config:
@@ -151,9 +155,9 @@ def _simulation(stimulus: Stimulus, simulate: Simulate, steps: Steps) -> SimResu
     return result
 
 
-def _reference(stimulus: Stimulus, config: Config, steps: Steps) -> Ideal:
+def _reference(stimulus: Stimulus, steps: Steps) -> Ideal:
     """The frame in float64, and how far from it a code may be."""
-    frame, exact = stimulus.frame, stimulus.exact
+    frame, exact, config = stimulus.frame, stimulus.exact, stimulus.full
     with steps.step("reference"):
         return Ideal(
             reference.render(frame, config),
@@ -179,7 +183,7 @@ def _report(
         clock_hz=request.clock_hz,
         simulation=simulation,
         comparison=comparison,
-        zero_normals=twin.zero_normals(stimulus.frame, request.config),
+        zero_normals=twin.zero_normals(stimulus.frame, stimulus.full),
         error=metrics.error_metrics(codes, ports),
         bound_lsb=None if ideal.bound is None else float(ideal.bound),
         pruned_differ=pruned_differ,
@@ -232,29 +236,36 @@ def run(request: RunRequest, simulate: Simulate, steps: Steps) -> dict:
     another run; OSError if a file cannot be written; BuildError or SimulationError if the
     simulator does not work.
     """
-    config = request.config
     with _results(request.out) as folder:
         stimulus = _front_end(request, folder, steps)
-        expected, pruned_differ = _twin(stimulus, config, steps)
+        expected, pruned_differ = _twin(stimulus, steps)
         simulation = _simulation(stimulus, simulate, steps)
-        ideal = _reference(stimulus, config, steps)
+        ideal = _reference(stimulus, steps)
         comparison = metrics.compare(expected, simulation.pixels)
         report = _report(request, stimulus, comparison, pruned_differ, simulation, ideal, steps)
         name = f"{report['scene']}, {report['technique']}"
         _pictures(folder, name, stimulus.frame, expected, simulation, ideal, steps)
         text = json.dumps(report, indent=2, allow_nan=False) + "\n"
         (folder / "report.json").write_text(text, encoding="utf-8")
-        _explain(stimulus, comparison, config)
+        if stimulus.full != request.config:
+            console.note(
+                f"the scene's normals are quadratic: {stimulus.full.name} builds second "
+                f"differences, which {request.config.name} is without"
+            )
+        _explain(stimulus, comparison)
     return report
 
 
-def _explain(stimulus: Stimulus, comparison: metrics.Comparison, config: Config) -> None:
+def _explain(stimulus: Stimulus, comparison: metrics.Comparison) -> None:
     """Say why pixels differ: what the build leaves out, and the first place in the stream."""
+    config = stimulus.full
     for reason in pruning.missing(stimulus.frame, stimulus.built, config):
         console.note(f"left out, but needed: {reason}")
     if comparison.first:
         console.note(_where(comparison.first))
-        by_technique = config in TECHNIQUES.values()  # `locate` knows the stages of these
+        # `locate` knows the stages of these, with normals of either order.
+        linear = replace(config, name=config.technique, normal_order=1)
+        by_technique = config in TECHNIQUES.values() or linear == replace(DEFAULT, name="phong")
         if comparison.first.expected and stimulus.built == config and by_technique:
             console.note(locate(stimulus.frame, comparison.first.index, config))
 

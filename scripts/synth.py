@@ -13,7 +13,7 @@ from rich.table import Table
 
 from phong75.model.analysis.pruning import prune
 from phong75.model.config import DEFAULT, Config
-from phong75.model.frame import InputError
+from phong75.model.frame import InputError, fitted
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
 from phong75.scripts import console, recorded
@@ -26,6 +26,7 @@ def pruned(config: Config, scene: str) -> Config:
     if not scene:
         return config
     frame = front_end(load_scene(scene, config=config), config).frame
+    config = fitted(config, frame)
     return dataclasses.replace(prune(frame, config)[0], name=f"{config.name}-{Path(scene).stem}")
 
 

@@ -26,7 +26,7 @@ from phong75.model.frame import Frame
 from phong75.model.front.scene import load_scene
 from phong75.model.registers import writes
 from phong75.model.scene_to_frame import front_end
-from phong75.model.spans import illegal_spans
+from phong75.model.spans import bent_beyond, illegal_spans
 from phong75.model.studies.methods import CONFIGS
 from phong75.model.studies.random_frames import random_frame
 from phong75.model.twin.core.register_map import unsupported_write, vanishing_exponent
@@ -405,6 +405,78 @@ def _single(*changes: Callable) -> ConfigurationTest:
     return _of(frame, pruning.prune(frame)[0])
 
 
+#: The full design with quadratic normals.
+QUADRATIC = dataclasses.replace(C, name="quadratic", normal_order=2)
+
+
+def bent(frame, rng):
+    """Give each span a bend that moves the middle of each component by up to 1 and no end by more
+    than the rounding. Spans of one or two pixels, in which a bend has no effect, get any bend."""
+    s, extra = frame.spans, C.bend_fraction_bits
+    s["start"] >>= 1
+    s["step"] >>= 1
+    last = np.maximum(s["length"].astype(np.int64) - 1, 1)[:, None]
+    shape = s["start"].shape
+    moved = rng.integers(-C.normal.one, C.normal.one, shape) >> rng.integers(0, 30, shape)
+    bend = -(moved << (extra + 3)) // (last * last)
+    bend[bent_beyond(_with_bends(s, bend), QUADRATIC)] = 0
+    step = s["step"] - (bend * (last - 1) >> (extra + 1))
+    fits = C.normal.contains(step)
+    s["step"], bend = np.where(fits, step, s["step"]), np.where(fits, bend, 0)
+    bend[bent_beyond(_with_bends(s, bend), QUADRATIC)] = 0
+    short = s["length"] <= 2
+    bend[short] = rng.integers(QUADRATIC.bend.min, QUADRATIC.bend.max + 1, (short.sum(), 3))
+    s["bend"] = bend
+
+
+def _with_bends(spans, bend):
+    """A copy of `spans` with other bends."""
+    spans = spans.copy()
+    spans["bend"] = bend
+    return spans
+
+
+def bent_misfits(frame: Frame, seed: int) -> Frame:
+    """`misfits` in which one span in three has any bends, in one to three components; some of
+    these spans are illegal."""
+    rng = np.random.default_rng(seed)
+    frame = misfits(frame, seed)
+    rows = np.flatnonzero(rng.random(len(frame.spans)) < 1 / 3)
+    bend = rng.integers(QUADRATIC.bend.min, QUADRATIC.bend.max + 1, (len(rows), 3))
+    bend = bend >> rng.integers(0, 40, bend.shape)
+    frame.spans["bend"][rows] = np.where(rng.random(bend.shape) < 0.5, bend, 0)
+    return frame
+
+
+def straight(frame, rng):
+    """A normal that is the same along each span."""
+    frame.spans["step"] = frame.spans["bend"] = 0
+
+
+def _quadratic() -> ConfigurationTest:
+    """The full design with quadratic normals, and its linear spans."""
+    linear, frame = plain(), plain(change=bent)
+    one_sided_frame = dataclasses.replace(plain(SEED + 1, longest=400, spans=60, change=bent))
+    one_sided_frame.two_sided = False
+    beyond = bent_misfits(frame, SEED)
+    return ConfigurationTest(
+        QUADRATIC, SimJob(frame), SimJob(frame, idle=100, stall=64, seed=SEED), SimJob(linear),
+        SimJob(one_sided_frame), SimJob(beyond), SimJob(beyond, idle=64, stall=100, seed=SEED),
+        SimJob(beyond, stop_after=90, stall=255), SimJob(frame, reset_first=True),
+    )  # fmt: skip
+
+
+def _quadratic_still() -> ConfigurationTest:
+    """Quadratic normals on a build without the adders of the interpolators."""
+    frame = plain(still=straight)
+    axes = {f"interpolate_{axis}": False for axis in "xyz"}
+    return ConfigurationTest(
+        dataclasses.replace(QUADRATIC, name="still", **axes), SimJob(frame),
+        SimJob(bent_misfits(frame, SEED + 1)),
+        SimJob(bent_misfits(frame, SEED + 2), stall=100, idle=100), full=QUADRATIC,
+    )  # fmt: skip
+
+
 def _intensities(technique: str, channels: int) -> ConfigurationTest:
     """Gouraud or flat shading with 1 or 3 colour channels."""
     config = dataclasses.replace(TECHNIQUES[technique], name="intensities", channels=channels)
@@ -455,6 +527,8 @@ CONFIGURATION_TESTS: dict[str, Callable[[], ConfigurationTest]] = {
     "default": _default,
     **{name: functools.partial(_alone, name) for name in ALONE},
     "hold_unlit": _hold,
+    "quadratic": _quadratic,
+    "quadratic still": _quadratic_still,
     "narrow": lambda: _of(*narrow()),
     "single": lambda: _single(),
     "single grey": lambda: _single(grey),

@@ -41,8 +41,10 @@ def frame_of(spans, config=DEFAULT, width=64, height=48):
     return Frame(width, height, (-70000, 100001), True, (1, 2, 255), table, array)
 
 
-def span(x=0, y=0, length=1, start=(0, 0, 1), step=(0, 0, 0), material=1, last=False):
-    return (x, y, length, start, step, material, last)
+def span(
+    x=0, y=0, length=1, start=(0, 0, 1), step=(0, 0, 0), material=1, last=False, bend=(0, 0, 0)
+):
+    return (x, y, length, start, step, material, last, bend)
 
 
 def assert_same(a: Frame, b: Frame):

@@ -519,13 +519,13 @@ def test_a_step_of_two_becomes_single_pixels():
     segment = Segments(*(np.array([v]) for v in (0, 1, 0, 2)))
     normals = np.array([[(0, 0, 1.0), (1.0, 0, 0), (-1.0, 0, 0)]])
     triangles.value = normals  # at line 1: half down both edges
-    spans, start, step = scene_to_spans._spans(triangles, segment, DEFAULT, "linear")
+    spans, start, step, bend = scene_to_spans._spans(triangles, segment, DEFAULT, "linear")
     assert len(spans) == 1
     triangles.value = np.array([[(0, -1.0, 0), (0, -1.0, 0), (0, 3.0, 0)]])  # step exactly 2
-    spans, start, step = scene_to_spans._spans(triangles, segment, DEFAULT, "linear")
+    spans, start, step, bend = scene_to_spans._spans(triangles, segment, DEFAULT, "linear")
     assert spans["x"].tolist() == [0, 1] and spans["length"].tolist() == [1, 1]
     assert spans["material"].tolist() == [3, 3]
-    assert (step == 0).all() and (spans["step"] == 0).all()
+    assert (step == 0).all() and (spans["step"] == 0).all() and not bend.any()
     assert start[:, 1] == pytest.approx([-1, 1])
 
 

@@ -20,6 +20,8 @@ from phong75.model.arrays import ArrayLike, Ints, Reals
 from phong75.model.config import DEFAULT, Config, Format
 from phong75.model.frame import Frame
 from phong75.model.quadratic_spans import MARGIN_BITS
+from phong75.model.twin.core.span_walker import walk
+from phong75.model.twin.techniques.second_difference_interpolator import parabola
 
 
 @dataclass(frozen=True)
@@ -40,13 +42,37 @@ def _round(fmt: Format) -> float:
     return fmt.lsb / 2
 
 
-def direction(config: Config) -> float:
+def direction(config: Config, tilt: float = 0.0) -> float:
     """Angle, radians, between the interpolated normal and the vector of its mantissas.
 
     Each component is rounded by at most half an LSB, and the longest component is at least 1/2. A
-    component that is clamped below 1 loses up to one LSB, but is then twice as long.
+    component that is clamped below 1 loses up to one LSB, but is then twice as long. tilt: see
+    `tilt_of_words`, which comes before.
     """
-    return np.sqrt(3) * _round(config.mantissa) / 0.5
+    return np.sqrt(3) * _round(config.mantissa) / 0.5 + tilt
+
+
+def tilt_of_words(frame: Frame, config: Config) -> float | None:
+    """Largest angle, radians, between the normal of a pixel and its words at the normalizer; 0
+    unless normals are quadratic.
+
+    `second_difference_interpolator` leaves out the bits of each component that `bend` has beyond
+    `normal`. This moves a component by less than one LSB, and changes neither its sign nor whether
+    the normal is the zero vector. The bound is that of the shortest normal that is moved. Returns
+    None if one is no longer than the largest error: its direction is lost.
+    """
+    if config.normal_order == 1:
+        return 0.0
+    spans = frame.spans[frame.spans["bend"].any(axis=1)]
+    cut, shortest = (1 << config.bend_fraction_bits) - 1, np.inf
+    for _, pixels in walk(spans, config):
+        start, step, bend = (spans[word][pixels.span].T for word in ("start", "step", "bend"))
+        normal = parabola(start, step, bend, pixels.k, config)
+        moved = (normal & cut != 0).any(axis=0)
+        length = np.sqrt((config.bend.real(normal[:, moved]) ** 2).sum(axis=0))
+        shortest = min(shortest, float(np.min(length, initial=np.inf)))
+    sine = np.sqrt(3) * config.normal.lsb / shortest
+    return float(np.arcsin(sine)) if sine < 1 else None
 
 
 def inverse_sqrt_linear(config: Config) -> float:
@@ -173,23 +199,26 @@ def root_of_square(square: float, config: Config) -> float:
     return (1 + length(config)) / np.sqrt(1 - square) - 1
 
 
-def cosine(config: Config, square: float = 0.0) -> float:
+def cosine(config: Config, square: float = 0.0, tilt: float = 0.0) -> float:
     """Error of cos(i) = Zn: direction, length, and the final rounding or, at 1, the clamp.
 
     `quadratic_spans` aligns Zn to a word below 2 and |N| to [1, 2). The error is then half an LSB
     of this word times the largest root, 1; or, where Zn is clamped, a whole LSB plus the possible
-    shortfall of |N|, times the smallest root, 1/2. square: see `squares`.
+    shortfall of |N|, times the smallest root, 1/2. square: see `squares`. tilt: see `direction`.
     """
     if config.normal_method == "quadratic_spans":
         word = config.quadratic_mantissa.lsb
         stretch = 1 / np.sqrt(1 - square)
         clamped = (word + 2 * (stretch - 1)) * stretch / (2 - word / 2)
         return clamped * (1 + length(config)) + root_of_square(square, config) + config.cosine.lsb
-    return direction(config) + length(config) + config.cosine.lsb
+    return direction(config, tilt) + length(config) + config.cosine.lsb
 
 
-def half_vector_cross(half_vector: ArrayLike, config: Config) -> tuple[float, float]:
-    """Error of w as two parts (relative, absolute); half_vector: its codes (hx, hz).
+def half_vector_cross(
+    half_vector: ArrayLike, config: Config, tilt: float = 0.0
+) -> tuple[float, float]:
+    """Error of w as two parts (relative, absolute); half_vector: its codes (hx, hz). tilt: see
+    `direction`.
 
     Relative: the length of the unit normal, and |h| - 1.
     Absolute, for `dot_first`: the direction; the components of the cross product of a mantissa (1/2
@@ -203,9 +232,9 @@ def half_vector_cross(half_vector: ArrayLike, config: Config) -> tuple[float, fl
     half = _round(config.unit)
     if config.normal_method == "dot_first":
         rounding = np.sqrt(2) * (config.mantissa.lsb / 0.5 + half)
-        return length(config) + abs(norm - 1), float(norm * direction(config) + rounding)
+        return length(config) + abs(norm - 1), float(norm * direction(config, tilt) + rounding)
     components = half * max(np.hypot(2 * hz, hx + hz), np.hypot(hz, hx + hz + max(hx, hz)))
-    absolute = norm * direction(config) + components + np.sqrt(2) * half
+    absolute = norm * direction(config, tilt) + components + np.sqrt(2) * half
     return length(config) + abs(norm - 1), float(absolute)
 
 
@@ -232,15 +261,17 @@ def quadratic_versine(v: ArrayLike, config: Config, square: float) -> Reals:
     return 2 * total + config.versine.lsb
 
 
-def versine(v: ArrayLike, half_vector: ArrayLike, config: Config, square: float = 0.0) -> Reals:
+def versine(
+    v: ArrayLike, half_vector: ArrayLike, config: Config, square: float = 0.0, tilt: float = 0.0
+) -> Reals:
     """Error of the versine v = 2 |w|**2 (float array, 0 to 1).
 
     An error dw of |w| changes |w|**2 by 2 |w| dw + dw**2; then v is rounded. half_vector: codes
-    (hx, hz). square: for `quadratic_spans`, see `squares`.
+    (hx, hz). square: for `quadratic_spans`, see `squares`. tilt: see `direction`.
     """
     if config.normal_method == "quadratic_spans":
         return quadratic_versine(v, config, square)
-    relative, absolute = half_vector_cross(half_vector, config)
+    relative, absolute = half_vector_cross(half_vector, config, tilt)
     w = np.sqrt(np.asarray(v) / 2)
     dw = relative * w + absolute
     return 2 * (2 * w * dw + dw**2) + _round(config.versine)
@@ -299,35 +330,43 @@ def specular_power(n: float, config: Config) -> float:
     return specular_power_tables(n, config)
 
 
-def power(n: float, half_vector: ArrayLike, config: Config, square: float = 0.0) -> float:
+def power(
+    n: float, half_vector: ArrayLike, config: Config, square: float = 0.0, tilt: float = 0.0
+) -> float:
     """Error of cos(s)**n: the error dv of v carried through the power, and `specular_power`.
 
     v is divided into steps. Each step contributes n c**(n-1) dv with the largest c = cos(s) and the
-    largest dv of the step, so that the result is a bound and not an estimate. half_vector, square:
-    see `versine`.
+    largest dv of the step, so that the result is a bound and not an estimate. half_vector, square,
+    tilt: see `versine`.
     """
     v = np.linspace(0, 1, 1025) ** 2  # dense near the highlight
-    dv = versine(v[1:], half_vector, config, square)
+    dv = versine(v[1:], half_vector, config, square, tilt)
     c = np.minimum(1 - v[:-1] + dv, 1)
     return float(np.max(n * c ** (n - 1) * dv)) + specular_power(n, config)
 
 
-def weight(points: Ints, config: Config, square: float = 0.0) -> float:
+def weight(points: Ints, config: Config, square: float = 0.0, tilt: float = 0.0) -> float:
     """Error of W(i): the steepest line of the table times the error of Zn, and the final rounding.
 
-    points: int[P], codes of W in `Config.coefficient`. square: see `squares`.
+    points: int[P], codes of W in `Config.coefficient`. square: see `squares`. tilt: see
+    `direction`.
     """
     real = config.coefficient.real(points)
     steepest = float(np.abs(np.diff(real)).max()) * (len(real) - 1)
-    return steepest * cosine(config, square) + _round(config.weight)
+    return steepest * cosine(config, square, tilt) + _round(config.weight)
 
 
-def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[BudgetRow]:
+def rows(
+    material: int, frame: Frame, config: Config = DEFAULT, tilt: float | None = 0.0
+) -> list[BudgetRow]:
     """The budget of one `material` (index) of `frame`; the last row bounds |code - 255 S| in LSB.
 
     S is eq. (3) at the pixel; for Gouraud and flat shading S is the interpolated intensity. For
-    `quadratic_spans` ValueError is raised if `squares` has no bound.
+    `quadratic_spans` ValueError is raised if `squares` has no bound. tilt: `tilt_of_words` of
+    `frame`; ValueError is raised for None.
     """
+    if tilt is None:
+        raise ValueError("a quadratic normal is shorter than the error of its words")
     white = (1 << config.colour_bits) - 1
     if config.technique != "phong":
         cut = BudgetRow(
@@ -363,13 +402,13 @@ def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[BudgetRo
     else:
         parts = [
             BudgetRow(
-                "normalizer: direction", direction(config), "mantissas of the normal, radians"
+                "normalizer: direction", direction(config, tilt), "mantissas of the normal, radians"
             ),
             BudgetRow("normalizer: length", length(config), "1/sqrt and its operand, relative"),
-            BudgetRow("cos(i)", cosine(config), "direction, length, rounding"),
+            BudgetRow("cos(i)", cosine(config, tilt=tilt), "direction, length, rounding"),
             BudgetRow(
                 "w",
-                half_vector_cross(frame.half_vector, config)[1],
+                half_vector_cross(frame.half_vector, config, tilt)[1],
                 "direction, rounding; absolute part",
             ),
         ]
@@ -382,12 +421,12 @@ def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[BudgetRo
         )
     )
     if w > 0:
-        specular = w * power(n, frame.half_vector, config, square)
-        weight_error = weight(table.weight[material], config, square)
+        specular = w * power(n, frame.half_vector, config, square, tilt)
+        weight_error = weight(table.weight[material], config, square, tilt)
     else:
         specular = weight_error = 0.0
     parts += [
-        BudgetRow("diffuse term", diffuse * cosine(config, square),
+        BudgetRow("diffuse term", diffuse * cosine(config, square, tilt),
             "Cp (1 - d) times the error of cos(i)"),
         BudgetRow("specular term", specular, "W times the error of cos(s)^n"),
         BudgetRow("W(i)", weight_error, "steepest line times the error of cos(i), rounding"),
@@ -412,7 +451,8 @@ def derived(config: Config, n: float) -> bool:
 def bound_lsb(frame: Frame, config: Config = DEFAULT) -> float | None:
     """Bound of |code - 255 S| in LSB over the materials that `frame` uses; 1/2 without spans.
 
-    None if no bound is derived for a method of `config` (`derived`) or for the spans (`squares`).
+    None if no bound is derived for a method of `config` (`derived`) or for the spans (`squares`,
+    `tilt_of_words`).
     """
     used = np.unique(frame.spans["material"]).tolist()
     exponents = config.exponent.real(frame.materials.exponent[used])
@@ -420,4 +460,7 @@ def bound_lsb(frame: Frame, config: Config = DEFAULT) -> float | None:
         return None
     if config.normal_method == "quadratic_spans" and squares(frame, config) is None:
         return None
-    return max((rows(m, frame, config)[-1].bound for m in used), default=0.5)
+    tilt = tilt_of_words(frame, config)
+    if tilt is None:
+        return None
+    return max((rows(m, frame, config, tilt)[-1].bound for m in used), default=0.5)

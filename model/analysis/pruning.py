@@ -41,8 +41,8 @@ class Facts:
 
     materials: int64[m], the rows of the material table that spans name; of those rows: ambient,
     diffuse: int64[m, 3]; weight: int64[m, P]; exponent: int64[m]. two_sided: of the frame. shifts:
-    the different shifts of the block normalization, int64, sorted. steps: int64[n, 3], of the spans
-    of more than one pixel.
+    the different shifts of the block normalization, int64, sorted. steps, bends: int64[n, 3], of
+    the spans of more than one pixel.
     """
 
     materials: Ints
@@ -53,6 +53,7 @@ class Facts:
     two_sided: bool
     shifts: Ints
     steps: Ints
+    bends: Ints
 
     @property
     def shiny(self) -> Flags:
@@ -64,10 +65,11 @@ def facts(frame: Frame, config: Config) -> Facts:
     """The facts of `frame` for the hardware of `config`."""
     spans = frame.spans
     used = np.unique(frame.spans["material"]).astype(np.int64)
-    table = frame.materials
+    table, longer = frame.materials, spans["length"] > 1
     return Facts(
         used, table.ambient[used], table.diffuse[used], table.weight[used], table.exponent[used],
-        bool(frame.two_sided), _shifts(spans, config), spans["step"][spans["length"] > 1],
+        bool(frame.two_sided), _shifts(spans, config), spans["step"][longer],
+        spans["bend"][longer],
     )  # fmt: skip
 
 
@@ -95,7 +97,8 @@ BY_HAND = {
     "flat": TECHNIQUES["flat"],
 }
 
-#: The fields of `Config` that `prune` decides on.
+#: The fields of `Config` that `prune` decides on. Where `normal_order` is 2, `prune` decides on
+#: that as well; the default configuration is without it.
 FEATURES = (
     "specular", "power_function", "power_bypass", "log_octaves", "weight_function", "diffuse",
     "ambient", "channels", "two_sided", "constant_half_vector", "constant_exponent",
@@ -263,10 +266,17 @@ class _Pruner:
             "constant_shift", len(shifts) > 1 or config.normal_method == "none" or zero_vector, why,
             "leading zeros of the components, their shifters", without=tuple(shifts.tolist()),
         )  # fmt: skip
-        for axis, name in enumerate("xyz"):
-            moving = int((self.facts.steps[:, axis] != 0).sum())
+        bent = int(self.spans["bend"].any(axis=1).sum())
+        if config.normal_order == 2:
             self.decide(
-                f"interpolate_{name}", moving, f"the step is other than 0 in {moving} spans",
+                "normal_order", bent, f"the bend is other than 0 in {bent} spans",
+                "second differences in the interpolators, and words of the span", without=1,
+            )  # fmt: skip
+        moves = (self.facts.steps != 0) | (self.facts.bends != 0)
+        for axis, name in enumerate("xyz"):
+            moving = int(moves[:, axis].sum())
+            self.decide(
+                f"interpolate_{name}", moving, f"step or bend is other than 0 in {moving} spans",
                 "adders of the interpolator",
             )  # fmt: skip
 
@@ -274,11 +284,12 @@ class _Pruner:
         """Top bits of words that are the same in the whole frame."""
         config, f, spans = self.config, self.facts, self.spans
         steepest = int(np.max(np.where(f.steps < 0, ~f.steps, f.steps), initial=0))
-        self._narrow(
-            "idle_step_bits", _idle(steepest, config.normal.bits - 1),
-            f"steps take {steepest.bit_length() + 1} of {config.normal.bits} bits",
-            "top bits of the steps",
-        )  # fmt: skip
+        if config.normal_order == 1 or "normal_order" in self.chosen:
+            idle = _idle(steepest, config.normal.bits - 1)
+            why = f"steps take {steepest.bit_length() + 1} of {config.normal.bits} bits"
+        else:
+            idle, why = 0, "steps change along a span"
+        self._narrow("idle_step_bits", idle, why, "top bits of the steps")
         right = max(spans["x"] + spans["length"], default=1) - 1
         for feature, largest, bits, word in (
             ("idle_material_bits", max(f.materials, default=0), config.material_bits, "material"),

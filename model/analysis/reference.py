@@ -51,15 +51,27 @@ def shade(
     return 255 * np.clip(s, 0, 1)
 
 
-def _pixels(spans: Spans, start: Reals, step: Reals) -> tuple[Reals, Ints]:
+def _pixels(spans: Spans, start: Reals, step: Reals, bend: Reals) -> tuple[Reals, Ints]:
     """Interpolated vectors float64[n, 3] and material indices int[n] of all pixels of `spans`.
 
-    start, step: float64[spans, 3].
+    start, step, bend: float64[spans, 3], value at the first pixel, change to the second, and growth
+    of that change per pixel: Newton's forward differences of a parabola.
     """
     length = np.maximum(spans["length"], 1)
     span = np.repeat(np.arange(len(spans)), length)
     k = np.arange(len(span)) - np.repeat(np.cumsum(length) - length, length)
-    return start[span] + k[:, None] * step[span], spans["material"][span]
+    value = start[span] + k[:, None] * step[span]
+    if bend.any():
+        # Whole numbers and fractions apart: both sums are then exact for the codes of legal spans.
+        growth, whole = (k * (k - 1) / 2)[:, None], np.trunc(bend)
+        value = value + growth * whole[span] + growth * (bend - whole)[span]
+    return value, spans["material"][span]
+
+
+def _differences(spans: Spans, config: Config) -> list[Reals]:
+    """Start, step and bend of `spans`, float64[spans, 3] each, in units of the LSB of `normal`."""
+    bend = np.ldexp(spans["bend"].astype(float), -config.bend_fraction_bits)
+    return [spans["start"].astype(float), spans["step"].astype(float), bend]
 
 
 def eye_of(half_vector: ArrayLike) -> Reals:
@@ -74,11 +86,9 @@ def eye_of(half_vector: ArrayLike) -> Reals:
     return 2 * h[..., 2:] * h - np.array([0, 0, 1.0])
 
 
-def zero_normals(frame: Frame) -> int:
+def zero_normals(frame: Frame, config: Config = DEFAULT) -> int:
     """Number of pixels of `frame` whose interpolated normal is the zero vector."""
-    normal, _ = _pixels(
-        frame.spans, frame.spans["start"].astype(float), frame.spans["step"].astype(float)
-    )
+    normal, _ = _pixels(frame.spans, *_differences(frame.spans, config))
     return int((normal == 0).all(axis=1).sum())
 
 
@@ -88,11 +98,11 @@ def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:
     Rows are in the order of the stream. The comparison with the pipeline's codes shows the error of
     the pipeline alone.
     """
-    start, step = frame.spans["start"].astype(float), frame.spans["step"].astype(float)
+    differences = _differences(frame.spans, config)
     if config.technique != "phong":
-        intensity, _ = _pixels(frame.spans, start, step)
+        intensity, _ = _pixels(frame.spans, *differences)
         return 255 * np.clip(intensity / config.normal.one, 0, 1)
-    normal, material = _pixels(frame.spans, start, step)
+    normal, material = _pixels(frame.spans, *differences)
     table, real = frame.materials, config.coefficient.real
     return shade(
         normal, real(table.ambient)[material], real(table.diffuse)[material],
@@ -107,7 +117,7 @@ def render_exact(frame: Frame, exact: ExactFrame, config: Config = DEFAULT) -> n
     exact: the values that were rounded to `frame`. The comparison with the pipeline's codes also
     shows the error of rounding the input.
     """
-    normal, m = _pixels(frame.spans, exact.start, exact.step)
+    normal, m = _pixels(frame.spans, exact.start, exact.step, exact.bend)
     if config.technique != "phong":
         return 255 * np.clip(normal, 0, 1)
     cp, d = exact.cp, exact.d[:, None]

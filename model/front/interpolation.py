@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Linear interpolation over a triangle: along two edges, then along the scan line.
+"""Interpolation over a triangle: linear, along two edges, then along the scan line; or quadratic.
 
 A point between two edges gets "the linear interpolation of the normals at the intersections of
 these two edges with a scan plane passing through the point" (Phong 1975, eq. (2) and after).
@@ -7,6 +7,9 @@ Gouraud's intensities are interpolated in the same way. Over a triangle the resu
 function through the three vertices. Lecture notes on the method (Starkey, "Shading Techniques",
 section 5) normalize the vectors at the edges before the step along the line; the argument
 `normalize_edges` selects this.
+
+Quadratic normals (van Overveld and Wyvill 1997, Vlachos et al. 2001) are the quadratic polynomial
+through six vectors: those at the vertices and those in the middle of the edges.
 """
 
 from __future__ import annotations
@@ -75,6 +78,40 @@ def interpolate(values: Reals, weights: ScanLineWeights, normalize_edges: bool =
     if normalize_edges:
         on_long, on_short = normalize(on_long), normalize(on_short)
     return _mix(on_long, on_short, weights.across)
+
+
+def interpolate_quadratic(values: Reals, weights: ScanLineWeights) -> Reals:
+    """Quadratic interpolation of `values` to the points: float64[n, C].
+
+    values: float64[n, 3, 2 C], vertices sorted by y: the value at each vertex, then the value in
+    the middle of the opposite edge. The barycentric coordinates are products of weights in [0, 1],
+    so they are in [0, 1] however thin the triangle is.
+    """
+    count = values.shape[2] // 2
+    at_long, across = weights.along_long, weights.across
+    short, none = weights.along_short, np.zeros_like(across)
+    upper_end, lower_end = across * (1 - short), across * short
+    shares = (
+        (1 - across) * (1 - at_long) + np.where(weights.lower, none, upper_end),
+        np.where(weights.lower, upper_end, lower_end),
+        (1 - across) * at_long + np.where(weights.lower, lower_end, none),
+    )
+    return quadratic(values[..., :count], values[..., count:], np.stack(shares, axis=-1))
+
+
+def quadratic(corners: Reals, middles: Reals, shares: Reals) -> Reals:
+    """The quadratic polynomial through `corners` and `middles` (float64[n, 3, C] each):
+    float64[n, C].
+
+    middles: the values in the middle of the edges opposite the corners. shares: float64[n, 3],
+    barycentric coordinates.
+    """
+    value = np.zeros_like(corners[:, 0])
+    for k in range(3):
+        own, next_, last = shares[:, k], shares[:, (k + 1) % 3], shares[:, (k + 2) % 3]
+        value += (own * (2 * own - 1))[:, None] * corners[:, k]
+        value += (4 * next_ * last)[:, None] * middles[:, k]
+    return value
 
 
 def _mix(a: Reals, b: Reals, t: Reals) -> Reals:

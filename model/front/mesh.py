@@ -16,6 +16,7 @@ import numpy as np
 
 from phong75.model.arrays import ArrayLike, Ints, Reals
 from phong75.model.frame import InputError
+from phong75.model.front.surface import Surface, Transformed
 
 #: Supported mesh files, by suffix.
 MESH_SUFFIXES = (".obj", ".ply", ".stl", ".glb")
@@ -39,12 +40,14 @@ class Mesh:
     faces: int64[F, 3], vertex indices, counter-clockwise seen from outside.
     normals: float64[F, 3, 3], unit length, outward, one per corner.
     degenerate: number of triangles that were dropped because they have no area.
+    surface: the smooth surface with these corners and normals, where it is known.
     """
 
     vertices: Reals
     faces: Ints
     normals: Reals
     degenerate: int = 0
+    surface: Surface | None = None
 
     def transformed(
         self,
@@ -62,12 +65,14 @@ class Mesh:
         scale = np.broadcast_to(np.asarray(scale, np.float64), 3)
         rotation = rotation_matrix(rotate)
         matrix = rotation * scale
-        vertices = apply_matrix(matrix, self.vertices) + np.asarray(translate, np.float64)
+        shift = np.asarray(translate, np.float64)
+        vertices = apply_matrix(matrix, self.vertices) + shift
         normals = normalize(apply_matrix(rotation / scale, self.normals))
         faces = self.faces
         if np.prod(scale) < 0:
             faces, normals = faces[:, ::-1], normals[:, ::-1]
-        return Mesh(vertices, faces, normals, self.degenerate)
+        surface = self.surface and Transformed(self.surface, matrix, shift)
+        return Mesh(vertices, faces, normals, self.degenerate, surface)
 
     def with_crease(self, crease: float) -> Mesh:
         """A new Mesh with normals computed from the faces (see `corner_normals`)."""

@@ -7,7 +7,8 @@ value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All
     size = [640, 480]               # pixels
     background = [0.0, 0.0, 0.0]    # red, green, blue, 0 to 1
     two_sided = false               # light both sides of surfaces, cull no back faces
-    interpolation = "linear"        # as in the paper; or "normalized_edges"
+    interpolation = "linear"        # as in the paper; or "normalized_edges", or "quadratic",
+                                    # "quadratic_vlachos", "quadratic_exact" (`mid_edge_normals`)
 
     [light]
     direction = [-0.5, 0.6, 1.0]    # towards the light, any length
@@ -60,7 +61,7 @@ import numpy as np
 from phong75.model.arrays import ArrayLike, Reals
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import InputError
-from phong75.model.front import shapes
+from phong75.model.front import mid_edge_normals, shapes
 from phong75.model.front.camera import (
     DEFAULT_DIRECTION,
     DEFAULT_FOV,
@@ -75,9 +76,10 @@ from phong75.model.front.camera import (
 from phong75.model.front.mesh import MESH_SUFFIXES, Mesh, is_consistent, load_mesh
 
 SCENES = Path(__file__).parent.parent / "scenes"
+TECHNIQUE_SCENES = SCENES / "techniques"
 DEFAULT_SIZE = (640, 480)
 DEFAULT_BACKGROUND = (0.05, 0.06, 0.08)
-INTERPOLATIONS = ("linear", "normalized_edges")
+INTERPOLATIONS = ("linear", "normalized_edges", *mid_edge_normals.RULES)
 
 SHAPES: dict[str, Callable[..., Mesh]] = {
     "sphere": shapes.sphere,
@@ -132,7 +134,8 @@ class Scene:
 
     width, height: pixels. background: red, green, blue, 0 to 1. light: float64[3], unit vector
     towards the light, scene axes. two_sided: shade both sides of surfaces, cull no back faces.
-    interpolation: "linear" (the paper's) or "normalized_edges" (see `interpolation`).
+    interpolation: "linear" (the paper's), "normalized_edges" (see `interpolation`) or one of
+    `mid_edge_normals.RULES`.
     """
 
     name: str
@@ -159,6 +162,11 @@ def bundled_scenes() -> list[str]:
     return sorted(p.stem for p in SCENES.glob("*.toml"))
 
 
+def technique_scenes() -> list[str]:
+    """Sorted names of the bundled scenes that show a technique beyond the default configuration."""
+    return sorted(p.stem for p in TECHNIQUE_SCENES.glob("*.toml"))
+
+
 def load_scene(
     name_or_path: str | Path, size: tuple[int, int] | None = None, config: Config = DEFAULT
 ) -> Scene:
@@ -169,17 +177,19 @@ def load_scene(
     InputError.
     """
     name = str(name_or_path)
-    if name in bundled_scenes():
-        path = SCENES / f"{name}.toml"
+    bundled = [*bundled_scenes(), *technique_scenes()]
+    if name in bundled:
+        folder = TECHNIQUE_SCENES if name in technique_scenes() else SCENES
+        path = folder / f"{name}.toml"
     else:
         path = Path(name)
         if not path.is_file():
             if path.exists():
                 raise InputError(f"{name}: not a file")
-            close = difflib.get_close_matches(name, bundled_scenes(), 1)
+            close = difflib.get_close_matches(name, bundled, 1)
             hint = f"; did you mean {close[0]}?" if close else ""
             raise InputError(
-                f"{name}: no such file, nor a bundled scene ({', '.join(bundled_scenes())}){hint}"
+                f"{name}: no such file, nor a bundled scene ({', '.join(bundled)}){hint}"
             )
     suffix = path.suffix.lower()
     if suffix == ".toml":

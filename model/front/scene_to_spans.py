@@ -5,6 +5,9 @@ The camera projects the triangles of the scene's objects (`camera`). Hidden surf
 scan line, which leaves visible segments (`visibility`). Each segment becomes a span: the normal at
 its first pixel and the step from pixel to pixel (`interpolation`), in the light frame.
 
+If the scene asks for quadratic normals, the triangles have normals in the middle of their edges as
+well (`mid_edge_normals`), and a span has a bend: how much its step grows from pixel to pixel.
+
 For Gouraud and flat shading a span carries intensities instead of normals: those of the vertices,
 or that of the face. The front end does not know how the hardware shades a vertex; the caller of
 `make_frame` passes a `VertexShader`.
@@ -30,10 +33,17 @@ from phong75.model.frame import (
 )
 from phong75.model.front import visibility
 from phong75.model.front.camera import light_frame
-from phong75.model.front.interpolation import interpolate, scan_line_weights
-from phong75.model.front.mesh import apply_matrix, face_normals, normalize
+from phong75.model.front.interpolation import (
+    interpolate,
+    interpolate_quadratic,
+    quadratic,
+    scan_line_weights,
+)
+from phong75.model.front.mesh import Mesh, apply_matrix, face_normals, normalize
+from phong75.model.front.mid_edge_normals import RULES, mid_edge_normals
 from phong75.model.front.scene import Scene
 from phong75.model.front.visibility import GRID, Segments, Triangles
+from phong75.model.spans import bent_beyond
 
 
 class VertexShader(Protocol):
@@ -95,6 +105,18 @@ def make_frame(
             f"{scene.name}: interpolation = {scene.interpolation} is for normals, "
             f"which {config.technique} shading does not interpolate"
         )
+    if scene.interpolation in RULES and config.spans_carry_squares:
+        raise InputError(
+            f"{scene.name}: interpolation = {scene.interpolation} is for normals, which the spans "
+            f"of {config.name} do not carry"
+        )
+    if scene.interpolation == "quadratic_exact":
+        for item in scene.objects:
+            if item.mesh.surface is None:
+                raise InputError(
+                    f"{scene.name}: interpolation = quadratic_exact needs the surface behind "
+                    f"{item.name}, which is not known; quadratic does without"
+                )
     if config.channels == 1 and any(len(set(m.color)) > 1 for m in scene.materials):
         raise InputError(f"{scene.name}: has colours, but the pipeline is built for grey")
     frame_axes, eye = light_frame(scene.light, scene.camera.axes[2])
@@ -108,7 +130,9 @@ def make_frame(
         if progress:
             progress(done)
     if parts:
-        frame.spans, exact.start, exact.step = map(np.concatenate, zip(*parts, strict=True))
+        frame.spans, exact.start, exact.step, exact.bend = map(
+            np.concatenate, zip(*parts, strict=True)
+        )
         frame.spans["last"][-1] = True
     meshes = [o.mesh for o in scene.objects]
     return FrontEnd(
@@ -133,7 +157,7 @@ def _frame(scene: Scene, eye: Reals, config: Config) -> tuple[Frame, ExactFrame]
         np.zeros(0, SPAN_DTYPE),
     )
     no_rows = np.zeros((0, 3))
-    return frame, ExactFrame(no_rows, no_rows, eye, cp, d, weight, exponent)
+    return frame, ExactFrame(no_rows, no_rows, no_rows, eye, cp, d, weight, exponent)
 
 
 def _triangles(
@@ -147,9 +171,10 @@ def _triangles(
     """The triangles of the scene that face the eye, projected to the screen.
 
     `Triangles.value` holds what is interpolated: for Phong's shading the normal in the light frame,
-    float64[T, 3, 3]; else float64[T, 3, 6], the intensities of red, green, blue as the hardware
-    computes them and then the exact ones. frame_axes: float64[3, 3], rows are the axes of the light
-    frame in world coordinates.
+    float64[T, 3, 3], or for quadratic normals float64[T, 3, 6], the normals at a corner and in the
+    middle of the opposite edge; else float64[T, 3, 6], the intensities of red, green, blue as the
+    hardware computes them and then the exact ones. frame_axes: float64[3, 3], rows are the axes of
+    the light frame in world coordinates.
     """
     meshes = [o.mesh for o in scene.objects]
     points = np.concatenate([m.vertices[m.faces] for m in meshes])
@@ -164,7 +189,12 @@ def _triangles(
         both = shade_vertices(value.reshape(-1, 3), np.repeat(material, 3), frame, exact, config)
         value = np.concatenate(both, axis=-1).reshape(-1, 3, 6)
     corners = scene.camera.project(points, scene.width, scene.height)
-    corners, value, material = visibility.clip(corners, value, material, scene.camera.near)
+    if scene.interpolation in RULES:
+        middle = [_mid_edge_normals(scene, m) for m in meshes]
+        value = np.concatenate([value, apply_matrix(frame_axes, np.concatenate(middle))], axis=-1)
+        corners, value, material = _clip_quadratic(corners, value, material, scene.camera.near)
+    else:
+        corners, value, material = visibility.clip(corners, value, material, scene.camera.near)
     w = corners[..., 2]
     return visibility.set_up(
         corners[..., 0] / w,
@@ -174,6 +204,41 @@ def _triangles(
         material,
         scene.two_sided,
     )
+
+
+def _mid_edge_normals(scene: Scene, mesh: Mesh) -> Reals:
+    """Normals in the middle of the edges opposite the corners of `mesh`, float64[F, 3, 3]."""
+    start = mesh.vertices[mesh.faces]
+    middle = (start + np.roll(start, -1, axis=1)) / 2
+    camera = scene.camera
+    back = np.broadcast_to(camera.axes[2], middle.shape)
+    if camera.projection == "perspective":
+        back = normalize(camera.eye - middle)
+    return np.roll(mid_edge_normals(mesh, scene.interpolation, back), -1, axis=1)
+
+
+def _clip_quadratic(
+    corners: Reals, value: Reals, material: Ints, near: float
+) -> tuple[Reals, Reals, Ints]:
+    """`visibility.clip` for triangles whose `value` (float64[T, 3, 2 C]) is quadratic in space.
+
+    What remains is quadratic on the screen, and has the values in space at its corners and at the
+    points that are seen in the middle of its edges. Without perspective, both are the same.
+    """
+    count = value.shape[2] // 2
+    shares = np.broadcast_to(np.eye(3), (len(corners), 3, 3))
+    corners, shares, source = visibility.clip(corners, shares, np.arange(len(corners)), near)
+    part = shares / corners[..., 2:3]  # barycentric coordinates, weighted as they are seen
+    ahead, behind = np.roll(part, -1, axis=1), np.roll(part, -2, axis=1)
+    opposite = (ahead + behind) / (ahead + behind).sum(axis=-1, keepdims=True)
+    of = value[source]
+    nodes = [
+        quadratic(of[..., :count], of[..., count:], place[:, k])
+        for place in (shares, opposite)
+        for k in range(3)
+    ]
+    value = np.concatenate([np.stack(nodes[:3], axis=1), np.stack(nodes[3:], axis=1)], axis=-1)
+    return corners, value, material[source]
 
 
 def visible(triangles: Triangles, width: int, height: int) -> Iterator[tuple[Segments, float]]:
@@ -204,54 +269,100 @@ def visible(triangles: Triangles, width: int, height: int) -> Iterator[tuple[Seg
 
 
 def _at_pixels(
-    triangles: Triangles, segments: Segments, x: Ints, values: Reals, normalize_edges: bool = False
+    triangles: Triangles, segments: Segments, x: Ints, values: Reals, interpolation: str = "linear"
 ) -> Reals:
     """float64[n, C]: `values` (float64[T, 3, C]) at the centre of pixel `x` (int64[n]) of each of
     the n segments."""
+    return _at(triangles, segments, x * GRID + GRID // 2, values, interpolation)
+
+
+def _at(
+    triangles: Triangles, segments: Segments, x: Ints, values: Reals, interpolation: str
+) -> Reals:
+    """As `_at_pixels`, at `x` (int64[n]) in units of 1/GRID pixel; for one of RULES, float64[n, C]
+    of `values` (float64[T, 3, 2 C])."""
     t = segments.triangle
-    weights = scan_line_weights(
-        triangles.x[t],
-        triangles.y[t],
-        x * GRID + GRID // 2,
-        segments.y * GRID + GRID // 2,
-    )
-    return interpolate(values[t], weights, normalize_edges)
+    weights = scan_line_weights(triangles.x[t], triangles.y[t], x, segments.y * GRID + GRID // 2)
+    if interpolation in RULES:
+        return interpolate_quadratic(values[t], weights)
+    return interpolate(values[t], weights, interpolation == "normalized_edges")
 
 
 def _spans(
     triangles: Triangles, segments: Segments, config: Config, interpolation: str
-) -> tuple[Spans, Reals, Reals]:
-    """The spans SPAN_DTYPE[n] of `segments`, and their start and step before rounding,
+) -> tuple[Spans, Reals, Reals, Reals]:
+    """The spans SPAN_DTYPE[n] of `segments`, and their start, step and bend before rounding,
     float64[n, 3] each.
 
     The step is the difference between the values at both ends of the segment, divided by the number
     of steps. Each value is a mean of the vertices' values with weights that are exact even in
-    slivers; a gradient over the triangle's plane would not be.
+    slivers; a gradient over the triangle's plane would not be. Quadratic normals are parabolas
+    along the segment: that through the values at both ends and in the middle between them.
     """
     ends = [
-        _at_pixels(triangles, segments, x, triangles.value, interpolation == "normalized_edges")
+        _at_pixels(triangles, segments, x, triangles.value, interpolation)
         for x in (segments.left, segments.right - 1)
     ]
     length = segments.right - segments.left
     start, step = ends[0], (ends[1] - ends[0]) / np.maximum(length - 1, 1)[:, None]
+    bend = np.zeros_like(step)
+    if interpolation in RULES:
+        centre = (segments.left + segments.right) * GRID // 2
+        middle = _at(triangles, segments, centre, triangles.value, interpolation)
+        bend, step = _parabola(ends[0], middle, ends[1], length)
 
     # No code holds a step of +2, from a normal to its opposite in one pixel. Such a segment becomes
-    # spans of one pixel each.
+    # spans of one pixel each. So does a segment with such a bend, or one whose codes leave a format
+    # between its pixels.
     rounded = np.floor(np.ldexp(step[:, :3], config.normal.fraction) + 0.5)
     single = ~np.all(config.normal.contains(rounded), axis=1)
+    if interpolation in RULES:
+        rounded = np.floor(np.ldexp(bend, config.bend.fraction) + 0.5)
+        single |= ~np.all(config.bend.contains(rounded), axis=1)
+        whole = np.zeros(len(length), SPAN_DTYPE)
+        whole["length"] = length
+        whole["start"], whole["step"], whole["bend"] = _codes(start, step, bend, config)
+        single |= bent_beyond(whole, config)
     pieces = np.where(single, length, 1)
     piece = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)
     row = np.repeat(np.arange(len(length)), pieces)
-    start = start[row] + piece[:, None] * step[row]
-    step = np.where(single[row, None], 0.0, step[row])
+    growth = (piece * (piece - 1) / 2)[:, None]
+    start = start[row] + piece[:, None] * step[row] + growth * bend[row]
+    step, bend = (np.where(single[row, None], 0.0, word[row]) for word in (step, bend))
 
     spans = np.zeros(len(row), SPAN_DTYPE)
     spans["x"] = segments.left[row] + piece
     spans["y"] = segments.y[row]
     spans["length"] = np.where(single[row], 1, length[row])
     spans["material"] = triangles.material[segments.triangle[row]]
-    spans["start"], spans["step"] = encode(start[:, :3], step[:, :3], spans["length"], config)
-    return spans, start[:, -3:], step[:, -3:]
+    if interpolation in RULES:
+        spans["start"], spans["step"], spans["bend"] = _codes(start, step, bend, config)
+    else:
+        spans["start"], spans["step"] = encode(start[:, :3], step[:, :3], spans["length"], config)
+    return spans, start[:, -3:], step[:, -3:], bend[:, -3:]
+
+
+def _codes(start: Reals, step: Reals, bend: Reals, config: Config) -> tuple[Ints, Ints, Ints]:
+    """Codes int64[n, 3] of start and step in `Config.normal`, and of bend in `Config.bend`.
+
+    At pixel k the rounding moves the normal by at most (1 + k + 2**-12 k (k - 1)/2)/2 LSB of
+    `normal`, where 2**-12 LSB of `normal` are one of `bend`: half an LSB for each of the three
+    words, times what the word counts there.
+    """
+    normal = config.normal
+    return normal.quantize(start), normal.quantize(step), config.bend.quantize(bend)
+
+
+def _parabola(first: Reals, middle: Reals, last: Reals, length: Ints) -> tuple[Reals, Reals]:
+    """Bend and step, float64[n, 3] each, of segments of `length` pixels (int64[n]).
+
+    first, last: values at the centres of the first and of the last pixel. middle: in the middle
+    between them. The bend is the second difference from pixel to pixel, the step the first one. A
+    segment of one or two pixels has no bend.
+    """
+    steps = np.maximum(length - 1, 1)[:, None]
+    bend = np.where(length[:, None] > 2, 4 * (first - 2 * middle + last) / steps**2, 0.0)
+    return bend, (last - first) / steps - (steps - 1) / 2 * bend
 
 
 def encode(start: Reals, step: Reals, length: ArrayLike, config: Config) -> tuple[Ints, Ints]:

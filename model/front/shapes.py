@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from phong75.model.arrays import Flags, Ints, Reals
+from phong75.model.front import surface
 from phong75.model.front.mesh import Mesh, corner_normals, normalize
 
 TEAPOT_FILE = Path(__file__).parent.parent / "data" / "newell_teapot_patches.txt"
@@ -29,7 +30,7 @@ def sphere(radius: float = 1.0, segments: int = 64, rings: int = 32) -> Mesh:
     )
     unit[0], unit[-1] = (0, 0, 1), (0, 0, -1)  # exact poles: sin(pi) is not exactly 0
     unit[:, -1] = unit[:, 0]  # exact seam
-    return _grid_mesh(radius * unit, unit)
+    return _grid_mesh(radius * unit, unit, surface.sphere(radius))
 
 
 def torus(radius: float = 1.0, tube: float = 0.4, segments: int = 64, sides: int = 32) -> Mesh:
@@ -51,7 +52,7 @@ def torus(radius: float = 1.0, tube: float = 0.4, segments: int = 64, sides: int
         np.broadcast_arrays(np.cos(azimuth), np.sin(azimuth), np.zeros_like(azimuth)), axis=-1
     )
     centre[:, -1] = centre[:, 0]
-    return _grid_mesh(radius * centre + tube * unit, unit)
+    return _grid_mesh(radius * centre + tube * unit, unit, surface.torus(radius, tube))
 
 
 def cone(radius: float = 1.0, height: float = 2.0, segments: int = 16, rings: int = 8) -> Mesh:
@@ -206,11 +207,11 @@ def _full_turn(steps: int) -> Reals:
     return np.linspace(0.0, 2.0 * np.pi, steps + 1)
 
 
-def _grid_mesh(points: Reals, normals: Reals) -> Mesh:
+def _grid_mesh(points: Reals, normals: Reals, smooth: surface.Surface | None = None) -> Mesh:
     """Mesh of a grid of points, two triangles per cell; triangles without area are left out.
 
     points, normals: float64[R, C, 3], unit normals. Seen from outside, columns go to the right and
-    rows downward. Triangles without area occur at poles.
+    rows downward. Triangles without area occur at poles. smooth: `Mesh.surface`.
     """
     rows, columns = points.shape[:2]
     index = np.arange(rows * columns).reshape(rows, columns)
@@ -222,4 +223,4 @@ def _grid_mesh(points: Reals, normals: Reals) -> Mesh:
     size = np.max(np.abs(vertices)) or 1.0
     distinct = [np.max(np.abs(e), axis=1) > 1e-9 * size for e in (p - q, q - r, r - p)]
     faces = faces[np.logical_and.reduce(distinct)]
-    return Mesh(vertices, faces, unit[faces])
+    return Mesh(vertices, faces, unit[faces], surface=smooth)

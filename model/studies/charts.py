@@ -159,6 +159,8 @@ def cost_chart(rows: list[dict], path: Path) -> None:
 #: Names of the techniques in legends.
 TECHNIQUE_NAMES = {
     "phong": "Phong", "gouraud": "Gouraud", "flat": "flat", "cubic": "cubic (model only)",
+    "quadratic": "quadratic", "quadratic_vlachos": "quadratic, Vlachos' rule",
+    "quadratic_exact": "quadratic, exact mid-edge normals",
 }  # fmt: skip
 
 

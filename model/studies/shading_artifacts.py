@@ -21,7 +21,6 @@ import numpy as np
 
 from phong75.model.analysis import reference
 from phong75.model.arrays import ArrayLike, Ints, Reals
-from phong75.model.config import TECHNIQUES
 from phong75.model.frame import ExactFrame, Frame
 from phong75.model.front.camera import Camera
 from phong75.model.front.interpolation import interpolate_at
@@ -42,8 +41,9 @@ def _along(frame: Frame, exact: ExactFrame, span: Ints, k: ArrayLike, technique:
     span: int[n], numbers of the spans. k: real[n], position in pixels from the centre of the span's
     first pixel.
     """
-    value = exact.start[span] + np.asarray(k)[:, None] * exact.step[span]
-    if technique != "phong":
+    k = np.asarray(k)[:, None]
+    value = exact.start[span] + k * exact.step[span] + k * (k - 1) / 2 * exact.bend[span]
+    if tessellation.SHADED[technique].technique != "phong":
         return 255 * np.clip(value, 0, 1)
     m, d = frame.spans["material"][span], exact.d[:, None]
     return reference.shade(
@@ -90,7 +90,7 @@ def profile(
     """The middle scan line of a picture: x (int[n]) and 255 S of green (float64[n]).
 
     name: a surface of `SURFACES`. level: number of steps of the mesh. technique: a key of
-    TECHNIQUES, or "true" for the surface itself. size: (width, height), pixels.
+    `tessellation.SHADED`, or "true" for the surface itself. size: (width, height), pixels.
     """
     line = size[1] // 2
     if technique == "true":
@@ -115,8 +115,8 @@ def turning(
     mesh = surface.mesh(level)
     for degree in range(frames):
         rotated = mesh.transformed(rotate=(0.0, 0.0, float(degree)))
-        scene = tessellation.scene_of(surface, rotated, size)
-        yield front_end(scene, TECHNIQUES[technique]).frame
+        scene = tessellation.shaded_scene(surface, rotated, technique, size)
+        yield front_end(scene, tessellation.SHADED[technique]).frame
 
 
 def flicker(frames: list[Frame], pixels: list) -> dict:

@@ -160,20 +160,29 @@ class Patch:
 
         Valid only for views in which no ray meets the patch twice.
         """
+        return self._see(origin, back, 0.0)
+
+    def see_beyond(self, origin: Reals, back: Reals) -> tuple[Flags, Reals]:
+        """As `see`, for the patch continued a little beyond its borders, where the straight edges
+        of a mesh are."""
+        return self._see(origin, back, 0.1)
+
+    def _see(self, origin: Reals, back: Reals, beyond: float) -> tuple[Flags, Reals]:
+        """`see` with the parameters u and v from -`beyond` to 1 + `beyond`."""
         axis = np.eye(3)[np.argmin(np.abs(back))]
         right = normalize(np.cross(axis, back))
         screen = np.stack([right, np.cross(back, right)])
         target, hull = origin @ screen.T, self.control.reshape(-1, 3) @ screen.T
         near = np.all((target >= hull.min(axis=0)) & (target <= hull.max(axis=0)), axis=1)
         hit, normal = np.zeros(len(target), bool), np.zeros((len(target), 3))
-        hit[near], normal[near] = self._solve(target[near], screen)
+        hit[near], normal[near] = self._solve(target[near], screen, beyond)
         return hit, normal
 
-    def _solve(self, target: Reals, screen: Reals) -> tuple[Flags, Reals]:
+    def _solve(self, target: Reals, screen: Reals, beyond: float) -> tuple[Flags, Reals]:
         """The points of the patch that are projected to `target`.
 
         target: float64[n, 2], screen coordinates. screen: float64[2, 3], axes of the screen.
-        Returns (hit, normal) as `see` does.
+        beyond: see `_see`. Returns (hit, normal) as `see` does.
         """
         grid = np.linspace(0, 1, 33)
         u0, v0 = (c.reshape(-1) for c in np.meshgrid(grid, grid))
@@ -192,7 +201,7 @@ class Patch:
             v = np.clip(v + (a[:, 0] * miss[:, 1] - a[:, 1] * miss[:, 0]) / det, -0.2, 1.2)
         point, du, dv = self.at(u, v)
         converged = np.linalg.norm(target - point @ screen.T, axis=1) < 1e-10
-        hit = converged & (np.minimum(u, v) >= 0) & (np.maximum(u, v) <= 1)
+        hit = converged & (np.minimum(u, v) >= -beyond) & (np.maximum(u, v) <= 1 + beyond)
         return hit, normalize(np.cross(dv, du))
 
     def turn(self, mesh: Mesh, tangent: Reals) -> Reals:

@@ -16,16 +16,17 @@ from typing import Any
 import numpy as np
 
 from phong75.model.analysis import reference
-from phong75.model.arrays import Reals
+from phong75.model.arrays import Flags, Reals
 from phong75.model.config import DEFAULT, TECHNIQUES
 from phong75.model.frame import Frame
 from phong75.model.front import scene_to_spans, visibility
 from phong75.model.front.camera import Camera, light_frame, view_axes
 from phong75.model.front.mesh import Mesh, apply_matrix, normalize
+from phong75.model.front.mid_edge_normals import RULES
 from phong75.model.front.scene import Material, Scene, SceneObject
 from phong75.model.front.visibility import GRID
 from phong75.model.scene_to_frame import front_end
-from phong75.model.studies.surfaces import SURFACES, Surface
+from phong75.model.studies.surfaces import SURFACES, Patch, Surface
 from phong75.model.twin import Pixels, render
 
 SIZE = (640, 480)
@@ -39,7 +40,16 @@ VIEWS = {
     "torus": ((0.2, -0.4, 1.0), 2.9),
     "patch": ((0.7, -0.7, 0.3), 2.4),
 }
-METHODS = (*TECHNIQUES, "cubic")
+#: Normals that are quadratic over each triangle, by the rule of their mid-edge normals.
+QUADRATIC = replace(DEFAULT, name="quadratic_normals", normal_order=2)
+#: What the RTL shades: {name: configuration}. A name in RULES is the interpolation of the scene.
+SHADED = TECHNIQUES | dict.fromkeys(
+    ("quadratic_vlachos", "quadratic", "quadratic_exact"), QUADRATIC
+)
+METHODS = (*SHADED, "cubic")
+#: Errors below this, in LSB, are not those of a technique. Vertices are snapped to 2**-12 pixel, so
+#: they move by up to 2**-13 pixel in x and y, and a picture changes by some LSB per pixel.
+FLOOR = 1e-3
 
 
 def scene_of(
@@ -123,6 +133,31 @@ def truth(name: str, size: tuple[int, int] = SIZE, material: Material = MATERIAL
 
 
 @dataclass(frozen=True)
+class SeenPatch:
+    """A teapot patch as `Mesh.surface`, for parallel rays."""
+
+    patch: Patch
+
+    def see(self, origin: Reals, back: Reals, reach: Reals) -> tuple[Flags, Reals]:
+        """See `front.surface.Surface`. In the view of the study no ray meets the patch twice."""
+        return self.patch.see_beyond(origin, back[0])
+
+
+def shaded_scene(
+    surface: Surface,
+    mesh: Mesh,
+    technique: str,
+    size: tuple[int, int] = SIZE,
+    material: Material = MATERIAL,
+) -> Scene:
+    """The scene that shows `mesh` by `technique`, a name of SHADED."""
+    if isinstance(surface, Patch):
+        mesh = replace(mesh, surface=SeenPatch(surface))
+    scene = scene_of(surface, mesh, size, material)
+    return replace(scene, interpolation=technique) if technique in RULES else scene
+
+
+@dataclass(frozen=True)
 class Picture:
     """A shaded mesh.
 
@@ -140,9 +175,12 @@ def shaded(
     size: tuple[int, int] = SIZE,
     material: Material = MATERIAL,
 ) -> tuple[Frame, Picture]:
-    """Frame (for the hardware) and Picture (before any rounding) of the mesh with `level` steps."""
-    scene = scene_of(surface, surface.mesh(level), size, material)
-    config = TECHNIQUES[technique]
+    """Frame (for the hardware) and Picture (before any rounding) of the mesh with `level` steps.
+
+    technique: a name of SHADED.
+    """
+    scene = shaded_scene(surface, surface.mesh(level), technique, size, material)
+    config = SHADED[technique]
     front = front_end(scene, config)
     pixels = render(front.frame, config)
     value = reference.render_exact(front.frame, front.exact, config)
@@ -259,9 +297,11 @@ def distance(a: Picture, b: Picture) -> float:
 def order(levels: Sequence[float], values: Sequence[float], last: int = 4) -> float:
     """Order of convergence: minus the slope of log `values` over log `levels`.
 
-    The slope is a least squares fit over the `last` points.
+    The slope is a least squares fit over the `last` points at or above FLOOR.
     """
-    slope = np.polyfit(np.log(levels[-last:]), np.log(values[-last:]), 1)[0]
+    points = [pair for pair in zip(levels, values, strict=True) if pair[1] >= FLOOR][-last:]
+    x, y = np.log(np.array(points)).T
+    slope = np.polyfit(x, y, 1)[0]
     return float(-slope)
 
 

@@ -21,7 +21,8 @@ module phong_unit (
 
     // offered span
     input wire                            taken,     // the span is accepted in this cycle
-    input wire [6*`PHONG_NORMAL_BITS-1:0] values,    // {step z, y, x, start z, y, x}, s1.30 each
+    input wire [`PHONG_VALUES_BITS-1:0]   values,    // {step z, y, x, start z, y, x}, s1.30 each;
+                                                     // NORMAL_ORDER 2: bend z, y, x above, s1.42
     input wire [`PHONG_COORDINATE_BITS:0] length,    // pixels
     input wire [`PHONG_MATERIAL_BITS-1:0] material,  // index
 
@@ -48,7 +49,9 @@ module phong_unit (
 
   localparam HOLD_UNLIT       = `PHONG_HOLD_UNLIT;      // 1: unlit pixels toggle nothing
   localparam NORMAL_METHOD    = `PHONG_NORMAL_METHOD;
+  localparam NORMAL_ORDER     = `PHONG_NORMAL_ORDER;    // 2: normals are quadratic along a span
   localparam NORMAL_BITS      = `PHONG_NORMAL_BITS;
+  localparam BEND_BITS        = NORMAL_BITS + `PHONG_BEND_FRACTION_BITS;
   localparam MATERIAL_BITS    = `PHONG_MATERIAL_BITS;
   localparam COEFFICIENT_BITS = `PHONG_COEFFICIENT_BITS;
   localparam INDEX_BITS       = `PHONG_WEIGHT_INDEX_BITS;
@@ -97,7 +100,7 @@ module phong_unit (
   wire [NORMAL_BITS-1:0] normal_x, normal_y, normal_z;
   wire overflow_x, overflow_y, overflow_z;
 
-  assign {step_z, step_y, step_x, start_z, start_y, start_x} = values;
+  assign {step_z, step_y, step_x, start_z, start_y, start_x} = values[6*NORMAL_BITS-1:0];
   assign overflow = overflow_x | overflow_y | overflow_z;
 
   wire [NORMAL_BITS-1:0] slope_x =
@@ -107,6 +110,16 @@ module phong_unit (
   wire [NORMAL_BITS-1:0] slope_z =
       INTERPOLATE_Z ? $signed(step_z << IDLE_STEP_BITS) >>> IDLE_STEP_BITS : 0;
 
+  wire [BEND_BITS-1:0] bend_x, bend_y, bend_z;
+
+  generate
+    if (NORMAL_ORDER == 2) begin : gen_bend
+      assign {bend_z, bend_y, bend_x} = values[6*NORMAL_BITS+:3*BEND_BITS];
+    end else begin : gen_no_bend
+      assign {bend_z, bend_y, bend_x} = {3 * BEND_BITS{1'b0}};
+    end
+  endgenerate
+
   span_guard u_span_guard (
       .clk(clk),
       .reset(reset),
@@ -114,6 +127,9 @@ module phong_unit (
       .step_x(step_x),
       .step_y(step_y),
       .step_z(step_z),
+      .bend_x(bend_x),
+      .bend_y(bend_y),
+      .bend_z(bend_z),
       .length(length),
       .material(material),
       .pixel_valid(pixel_valid),
@@ -127,35 +143,72 @@ module phong_unit (
   );
 
   // ---- three interpolators in parallel ----
-  linear_interpolator u_interpolator_x (
-      .clk(clk),
-      .load(load),
-      .advance(advance),
-      .start(start_x),
-      .step(slope_x),
-      .value(normal_x),
-      .overflow(overflow_x)
-  );
+  generate
+    if (NORMAL_ORDER == 2) begin : gen_quadratic
+      second_difference_interpolator u_interpolator_x (
+          .clk(clk),
+          .load(load),
+          .advance(advance),
+          .start(start_x),
+          .step(slope_x),
+          .bend(INTERPOLATE_X ? bend_x : {BEND_BITS{1'b0}}),
+          .value(normal_x),
+          .overflow(overflow_x)
+      );
 
-  linear_interpolator u_interpolator_y (
-      .clk(clk),
-      .load(load),
-      .advance(advance),
-      .start(start_y),
-      .step(slope_y),
-      .value(normal_y),
-      .overflow(overflow_y)
-  );
+      second_difference_interpolator u_interpolator_y (
+          .clk(clk),
+          .load(load),
+          .advance(advance),
+          .start(start_y),
+          .step(slope_y),
+          .bend(INTERPOLATE_Y ? bend_y : {BEND_BITS{1'b0}}),
+          .value(normal_y),
+          .overflow(overflow_y)
+      );
 
-  linear_interpolator u_interpolator_z (
-      .clk(clk),
-      .load(load),
-      .advance(advance),
-      .start(start_z),
-      .step(slope_z),
-      .value(normal_z),
-      .overflow(overflow_z)
-  );
+      second_difference_interpolator u_interpolator_z (
+          .clk(clk),
+          .load(load),
+          .advance(advance),
+          .start(start_z),
+          .step(slope_z),
+          .bend(INTERPOLATE_Z ? bend_z : {BEND_BITS{1'b0}}),
+          .value(normal_z),
+          .overflow(overflow_z)
+      );
+    end else begin : gen_linear
+      linear_interpolator u_interpolator_x (
+          .clk(clk),
+          .load(load),
+          .advance(advance),
+          .start(start_x),
+          .step(slope_x),
+          .value(normal_x),
+          .overflow(overflow_x)
+      );
+
+      linear_interpolator u_interpolator_y (
+          .clk(clk),
+          .load(load),
+          .advance(advance),
+          .start(start_y),
+          .step(slope_y),
+          .value(normal_y),
+          .overflow(overflow_y)
+      );
+
+      linear_interpolator u_interpolator_z (
+          .clk(clk),
+          .load(load),
+          .advance(advance),
+          .start(start_z),
+          .step(slope_z),
+          .value(normal_z),
+          .overflow(overflow_z)
+      );
+    end
+  endgenerate
 
   // ---- unit normal ----
   wire [UNIT_BITS-1:0] unit_x, unit_y, unit_z;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // span_guard: flags spans that need what a pruned build leaves out:
-// a step of a component that the build holds constant over a span; a material, a place or a step
-// beyond the narrowed words; a normal of another size than the constant shift is made for.
+// a step or a bend of a component that the build holds constant over a span; a material, a place or
+// a step beyond the narrowed words; a normal of another size than the constant shift is made for.
 // In a full build the module contains no logic.
 // Latency: 2 cycles from the last pixel of a span to `unsupported`.
 // Throughput: one pixel per cycle.
@@ -18,6 +18,9 @@ module span_guard (
     input wire [`PHONG_NORMAL_BITS-1:0]   step_x,    // s1.30, per pixel
     input wire [`PHONG_NORMAL_BITS-1:0]   step_y,    // s1.30, per pixel
     input wire [`PHONG_NORMAL_BITS-1:0]   step_z,    // s1.30, per pixel
+    input wire [`PHONG_NORMAL_BITS+`PHONG_BEND_FRACTION_BITS-1:0] bend_x,  // s1.42, of the step
+    input wire [`PHONG_NORMAL_BITS+`PHONG_BEND_FRACTION_BITS-1:0] bend_y,  // s1.42, of the step
+    input wire [`PHONG_NORMAL_BITS+`PHONG_BEND_FRACTION_BITS-1:0] bend_z,  // s1.42, of the step
     input wire [`PHONG_COORDINATE_BITS:0] length,    // pixels
     input wire [`PHONG_MATERIAL_BITS-1:0] material,  // index
 
@@ -64,6 +67,7 @@ module span_guard (
       assign unsupported = 1'b0;
 
       wire unused = &{1'b0, clk, reset, taken, step_x, step_y, step_z, length, material,
+                      bend_x, bend_y, bend_z,
                       pixel_valid, at_end, pixel_x, pixel_y, normal_x, normal_y, normal_z,
                       NO_MATERIAL, NO_X, NO_Y, NO_SLOPE, NO_SIZE, SIGN == SHIFT};
     end else begin : gen_guard
@@ -79,7 +83,7 @@ module span_guard (
       // Three register stages: checks of the accepted span, checks of the current pixel and its
       // span, the flag.
       reg many_pixels, wrong_material;
-      reg [2:0] wrong_step, steep_step;
+      reg [2:0] wrong_step, wrong_bend, steep_step;
       reg wrong_span, wrong_place, wrong_size, valid, ends;
       reg wrong_before;  // an earlier pixel of the same span is wrong
       reg flagged;
@@ -92,12 +96,15 @@ module span_guard (
           wrong_step[0] <= (INTERPOLATE_X == 0) & (step_x != 0);
           wrong_step[1] <= (INTERPOLATE_Y == 0) & (step_y != 0);
           wrong_step[2] <= (INTERPOLATE_Z == 0) & (step_z != 0);
+          wrong_bend[0] <= (INTERPOLATE_X == 0) & (bend_x != 0);
+          wrong_bend[1] <= (INTERPOLATE_Y == 0) & (bend_y != 0);
+          wrong_bend[2] <= (INTERPOLATE_Z == 0) & (bend_z != 0);
           steep_step[0] <= |(sign_change_x & NO_SLOPE);
           steep_step[1] <= |(sign_change_y & NO_SLOPE);
           steep_step[2] <= |(sign_change_z & NO_SLOPE);
         end
 
-        wrong_span <= many_pixels & |{wrong_step, steep_step} | wrong_material;
+        wrong_span <= many_pixels & |{wrong_step, wrong_bend, steep_step} | wrong_material;
         wrong_place <= |(pixel_x & NO_X) | |(pixel_y & NO_Y);
         wrong_size <= (CONSTANT_SHIFT != 0) & (|(size & NO_SIZE) | ~size[SIGN-SHIFT]);
         valid <= ~reset & pixel_valid;

@@ -325,12 +325,18 @@ def clocks(configurations: dict[str, dict[str, Any]]) -> str:
 
 def surfaces(record: dict[str, Any]) -> str:
     """Errors against true surfaces, and the paper's claims as numbers."""
-    methods = ("flat", "gouraud", "phong", "cubic")
+    bent = ("quadratic_vlachos", "quadratic", "quadratic_exact")
+    methods = ("flat", "gouraud", "phong", *bent, "cubic")
     rows: list[tuple[str, ...]] = []
 
     def line(mesh: str, what: str, values: Sequence[float | str | None]) -> None:
         cells = [number(v, 2) if isinstance(v, float) else v or "" for v in values]
         rows.append((mesh, what, *cells, *[""] * (len(methods) - len(cells))))
+
+    def jumps(shape: str, level: int) -> tuple[str, list[float | str | None]]:
+        by = record["mach_bands"][shape][str(level)]
+        slopes = [by[m]["slope_mean"] for m in methods[1:-1]]
+        return "jump of the slope at edges, LSB per pixel", ["not smooth", *slopes]
 
     for shape, by in _by_shape(record["meshes"]).items():
         mesh = f"{shape}, {by['flat']['triangles']} triangles"
@@ -338,18 +344,19 @@ def surfaces(record: dict[str, Any]) -> str:
         line("", "RMS error in the highlight, LSB", [by[m]["highlight_rms_lsb"] for m in methods])
         orders = record["orders"][shape]
         line("", "order of convergence", [orders[m]["facing_rms"] for m in methods])
-        jumps = record["mach_bands"][shape][str(by["flat"]["level"])]
-        slopes = [jumps[m]["slope_mean"] for m in ("gouraud", "phong")]
-        line("", "jump of the slope at edges, LSB per pixel", ["not smooth", *slopes])
+        line("", *jumps(shape, by["flat"]["level"]))
+    line("torus of 16 steps, 256 triangles", *jumps("torus", 16))
     for shape, by in record["flicker"].items():
         mesh = f"{shape}, turning into itself"
-        line(mesh, "RMS change per degree, LSB", [by[m]["change_rms"] for m in methods[:3]])
-        peaks = ["{} to {}".format(*by[m]["peak_range"]) for m in methods[:3]]
+        shown = [by.get(m) for m in methods]
+        line(mesh, "RMS change per degree, LSB", [of and of["change_rms"] for of in shown])
+        peaks = [of and "{} to {}".format(*of["peak_range"]) for of in shown]
         line("", "brightest code, over all pictures", peaks)
     for kind, name in (("quadrilateral", "square as one polygon"), ("triangles", "two triangles")):
         spread = record["orientation"][kind]["largest_spread_lsb"]
         line(name, "largest dependence on orientation, LSB", [None, spread])
-    header = ("mesh", "what", "flat", "Gouraud", "Phong", "cubic (model only)")
+    header = ("mesh", "what", "flat", "Gouraud", "Phong", "quadratic, Vlachos", "quadratic",
+              "quadratic, exact", "cubic (model only)")  # fmt: skip
     return markdown(header, rows, left=2)
 
 

@@ -94,9 +94,14 @@ def _span_meaning(field: SpanField, config: Config) -> tuple[str, str, str]:
         name = "\\|N\\|²" if what == "square" else "\\|N × h\\|²"
         order = ("value", "first difference", "second difference")[int(axis)]
         return field.name, str(config.squared), f"{name} over the pixels of the span: {order}"
+    if what == "bend":
+        return field.name, str(config.bend), f"change of step_{axis} from one pixel to the next"
     meaning = {
         "start": f"normal's {axis} at the centre of the first pixel",
-        "step": f"change of the normal's {axis} from one pixel to the next",
+        "step": f"change of the normal's {axis} from "
+        + (
+            "one pixel to the next" if config.normal_order == 1 else "the first pixel to the second"
+        ),
     }
     return field.name, str(config.normal), meaning[what]
 

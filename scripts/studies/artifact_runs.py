@@ -28,6 +28,7 @@ FOLDER = BUILD / "sweep"
 #: Meshes on which the techniques can be told apart: steps once round.
 LEVELS = {"sphere": (16, 32, 64), "torus": (16, 32, 64), "patch": (4, 8, 16)}
 TURNING = {"sphere": 16, "torus": 32}
+FLICKERING = (*TECHNIQUES, "quadratic")
 FRAMES = 30
 FLICKER_SIZE = (320, 240)
 SQUARE_SIZE = 200
@@ -35,7 +36,7 @@ SQUARE_SIZE = 200
 
 def shaded_by_rtl(frames: list, technique: str) -> list:
     """`Pixels` of each of `frames`. Raises MismatchError, BuildError, SimulationError."""
-    config = TECHNIQUES[technique]
+    config = tessellation.SHADED[technique]
     results = simulate_jobs([SimJob(frame) for frame in frames], config)
     for frame, result in zip(frames, results, strict=True):
         if metrics.compare(twin.render(frame, config), result.pixels).mismatches:
@@ -50,8 +51,9 @@ def mach(levels=LEVELS, size=tessellation.SIZE) -> dict:
     for shape, steps in levels.items():
         surface, true = SURFACES[shape], tessellation.truth(shape, size)
         for level in steps:
-            scene = tessellation.scene_of(surface, surface.mesh(level), size)
-            for technique, config in TECHNIQUES.items():
+            for technique, config in tessellation.SHADED.items():
+                mesh = surface.mesh(level)
+                scene = tessellation.shaded_scene(surface, mesh, technique, size)
                 found = shading_artifacts.mach_bands(
                     front_end(scene, config), technique, true.covered & (true.facing >= 0.5)
                 )
@@ -64,7 +66,7 @@ def flicker(turning=TURNING, count: int = FRAMES, size=FLICKER_SIZE) -> tuple[di
     out: dict = {}
     maps, curves = {}, {}
     for shape, level in turning.items():
-        for technique in TECHNIQUES:
+        for technique in FLICKERING:
             frames = list(shading_artifacts.turning(shape, level, technique, count, size))
             pixels = shaded_by_rtl(frames, technique)
             out.setdefault(shape, {})[technique] = shading_artifacts.flicker(frames, pixels)
@@ -128,28 +130,32 @@ def table(found: dict) -> Table:
     """What there is to see of `found` in a terminal."""
     out = Table(title="the paper's arguments")
     out.add_column("what")
-    for technique in TECHNIQUES:
+    techniques = tuple(tessellation.SHADED)
+    for technique in techniques:
         out.add_column(technique, justify="right")
     for shape, levels in found["mach_bands"].items():
         for level, by in levels.items():
             out.add_row(
                 f"slope jump at edges, {shape} of {level}, LSB/pixel, mean",
-                *(f"{by[t]['slope_mean']:.3f}" for t in TECHNIQUES),
+                *(f"{by[t]['slope_mean']:.3f}" for t in techniques),
             )
             out.add_row(
                 f"intensity jump, {shape} of {level}, LSB, RMS",
-                *(f"{by[t]['intensity_rms']:.3f}" for t in TECHNIQUES),
+                *(f"{by[t]['intensity_rms']:.3f}" for t in techniques),
             )
     for shape, by in found["flicker"].items():
         out.add_row(
             f"change in a degree, {shape}, LSB, RMS (max)",
-            *(f"{by[t]['change_rms']:.3f} ({by[t]['change_max']:.0f})" for t in TECHNIQUES),
+            *(
+                f"{by[t]['change_rms']:.3f} ({by[t]['change_max']:.0f})" if t in by else ""
+                for t in techniques
+            ),
         )
         out.add_row(
             f"highlight's peak, {shape}",
-            *("{} to {}".format(*by[t]["peak_range"]) for t in TECHNIQUES),
+            *("{} to {}".format(*by[t]["peak_range"]) if t in by else "" for t in techniques),
         )
     for kind in ("quadrilateral", "triangles"):
         spread = found["orientation"][kind]["largest_spread_lsb"]
-        out.add_row(f"spread over orientations, {kind}, LSB", "", f"{spread:.3g}", "")
+        out.add_row(f"spread over orientations, {kind}, LSB", "", f"{spread:.3g}")
     return out

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Error against the true surface, over meshes from coarse to fine: `phong75 tessellation`.
 
-Sphere, torus and teapot patch through the RTL by every technique, and in the model alone by the
-cubic interpolant that Phong (1975) mentions. Writes build/sweep/tessellation.csv, .json (orders of
-convergence, and techniques against each other), .png and .svg; and what
+Sphere, torus and teapot patch through the RTL by every technique, with quadratic normals by every
+rule of their mid-edge normals, and in the model alone by the cubic interpolant that Phong (1975)
+mentions. Writes build/sweep/tessellation.csv, .json (orders of convergence, and techniques against
+each other), .png and .svg; and what
 scripts/studies/artifact_runs.py writes. Exit code: 0; 1 if a pixel of RTL and model differs.
 """
 
@@ -18,7 +19,6 @@ from rich.table import Table
 
 from phong75.model import twin
 from phong75.model.analysis import metrics
-from phong75.model.config import TECHNIQUES
 from phong75.model.studies import tessellation
 from phong75.model.studies.charts import tessellation_chart
 from phong75.model.studies.surfaces import SURFACES
@@ -58,7 +58,7 @@ def measure(
         if technique == "cubic":
             pictures = [tessellation.cubic(surface, level, size) for level in levels]
         else:
-            config = TECHNIQUES[technique]
+            config = tessellation.SHADED[technique]
             frames = []
             for level in levels:
                 frame, picture = tessellation.shaded(surface, level, technique, size)

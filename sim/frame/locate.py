@@ -7,6 +7,7 @@ import json
 import os
 import shutil
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import cocotb
@@ -56,7 +57,7 @@ async def locate_stage(dut):
     """
     folder = Path(os.environ[environment.VECTORS])
     where = json.loads((folder / "where.json").read_text())
-    config = TECHNIQUES[where["technique"]]
+    config = replace(TECHNIQUES[where["technique"]], normal_order=where["normal_order"])
     frame = read_spans(folder / "spans", config)
     for module, inputs, expected in _vectors(frame, where["pixel"], config):
         if module != where["module"]:
@@ -85,7 +86,7 @@ def locate(frame: Frame, pixel: int, config: Config = DEFAULT, rtl: Path | None 
         write_spans(folder / "spans", frame, config)
         phong = config.technique == "phong"
         modules = ("normalizer", "shading_unit") if phong else ("intensity_code",)
-        where = {"technique": config.technique, "pixel": pixel}
+        where = {"technique": config.technique, "pixel": pixel, "normal_order": config.normal_order}
         for module in modules:
             (folder / "where.json").write_text(json.dumps(where | {"module": module}))
             top, text = bench_source(module)
@@ -96,9 +97,10 @@ def locate(frame: Frame, pixel: int, config: Config = DEFAULT, rtl: Path | None 
             if message:
                 return message
         other = "register_map" if phong else f"{config.technique}_unit"
+        interpolator = ("linear", "second_difference")[config.normal_order - 1]
         return (
             f"{' and '.join(modules)} agree with the twin for this pixel's interpolated vector: "
-            f"the difference is in span_walker, linear_interpolator, {other} or pixel_fifo"
+            f"the difference is in span_walker, {interpolator}_interpolator, {other} or pixel_fifo"
         )
     finally:
         shutil.rmtree(folder, ignore_errors=True)

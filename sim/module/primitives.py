@@ -113,6 +113,17 @@ def _interpolator(bits):
     )  # fmt: skip
 
 
+def _second_differences(bits, extra):
+    return Instance(
+        "second_difference_interpolator",
+        {
+            "load": f"c[{bits + extra}]", "advance": f"c[{bits + extra + 1}]",
+            "start": f"a[0+:{bits}]", "step": f"b[0+:{bits}]", "bend": f"c[0+:{bits + extra}]",
+        },
+        {"value": bits, "overflow": 1}, dict(NORMAL_BITS=bits, EXTRA_BITS=extra), latency="1",
+    )  # fmt: skip
+
+
 #: Size and contents of the ROM under test.
 ROM_ADDRESS_BITS, ROM_WORD_BITS = 5, 7
 ROM_WORDS = tuple((37 * k * k + 11 * k + 5) % (1 << ROM_WORD_BITS) for k in range(32))
@@ -181,6 +192,8 @@ INSTANCES: dict[str, Instance] = {
     "rom_5x7": Instance("rom", {"address": f"a[0+:{ROM_ADDRESS_BITS}]"}, {"word": 7}, _ROM),
     **MEMORIES,
     "interpolator": _interpolator(C.normal.bits), "interpolator_5": _interpolator(5),
+    "second_differences": _second_differences(C.normal.bits, C.bend_fraction_bits),
+    "second_differences_7": _second_differences(7, 3),
     "hold": Instance(
         "normal_hold",
         {

@@ -215,6 +215,50 @@ async def linear_interpolator(dut, name):
 
 
 @cocotb.test()
+@cocotb.parametrize(name=_of("second_difference_interpolator"))
+async def second_difference_interpolator(dut, name):
+    """Random values, loaded or added, of small and large bends. Overflow stays 1 after a value left
+    the word, or a step that led to a pixel, until a load."""
+    p = INSTANCES[name].parameters
+    bits, extra = p["NORMAL_BITS"], p["EXTRA_BITS"]
+    wide, rng, n = bits + extra, np.random.default_rng(SEED), 2 * RANDOM
+    start, step = (_signed(_corners(rng, bits, n), bits) for _ in range(2))
+    bend = _signed(_corners(rng, wide, n), wide)
+    step = np.where(rng.random(n) < 0.5, step >> rng.integers(0, bits, n), step)
+    bend = np.where(rng.random(n) < 0.8, bend >> rng.integers(0, wide, n), bend)
+    load = rng.random(n) < 0.15
+    advance = rng.random(n) < 0.7
+    load[0] = advance[0] = True
+    value, overflow = np.empty(n, np.int64), np.empty(n, np.int64)
+    exact = held = held_bend = 0
+
+    def leaves(code):
+        return not -(1 << (wide - 1)) <= code < 1 << (wide - 1)
+
+    steep = fell = 0  # steps and values that left the word
+    for k in range(n):
+        if advance[k] and load[k]:
+            exact, held, held_bend = (
+                int(w) for w in (start[k] << extra, step[k] << extra, bend[k])
+            )
+            over = False
+        elif advance[k]:
+            steep += leaves(held) and not over
+            over |= leaves(held)
+            exact += held
+            fell += leaves(exact) and not over
+            over |= leaves(exact)
+            held += held_bend
+        value[k] = exact >> extra | (exact % (1 << extra) != 0)
+        overflow[k] = over
+    assert min(steep, fell) > 100, (steep, fell)
+    control = load | advance << 1
+    inputs = start, step, bend % (1 << wide) | control << wide
+    expected = {"value": value, "overflow": overflow}
+    await PrimitivesTB(dut).check(name, inputs, expected, NOTE)
+
+
+@cocotb.test()
 async def normal_hold(dut):
     """The last normal that may be lit is held during other normals and cycles without a pixel."""
     rng = np.random.default_rng(SEED)

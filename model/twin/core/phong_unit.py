@@ -17,11 +17,20 @@ from phong75.model.twin.core.normalizer import normalizer
 from phong75.model.twin.core.shading_unit import shading_unit
 from phong75.model.twin.methods.unnormalized import unnormalized
 from phong75.model.twin.pruning.normal_hold import normal_hold
+from phong75.model.twin.techniques.second_difference_interpolator import (
+    second_difference_interpolator,
+)
 
 
 def interpolate(spans: Spans, span: Ints, k: Ints, config: Config) -> tuple[Ints, Flags]:
     """The three interpolators: normals int64[3, n] in `normal` (s1.30) at pixel `k` of the spans
-    number `span` (int64[n] each), and whether a component left its word, bool[n]."""
+    number `span` (int64[n] each), and whether a component left its word, bool[n].
+
+    With `normal_order` 2 the second is all false: see `spans.illegal_spans`.
+    """
+    if config.normal_order == 2:
+        start, step, bend = (spans[word][span].T for word in ("start", "step", "bend"))
+        return second_difference_interpolator(start, step, bend, k, config), np.zeros(len(k), bool)
     parts = [
         linear_interpolator(spans["start"][span, axis], spans["step"][span, axis], k, config)
         for axis in range(3)

@@ -17,15 +17,16 @@ from phong75.model.twin.core.span_walker import walk
 def span_guard(spans: Spans, built: Config) -> Flags:
     """Which of the legal `spans` (SPAN_DTYPE[n]) the RTL of `built` flags as unsupported, bool[n].
 
-    Flagged are a step that is not 0 in a component that `built` does not interpolate, a step,
-    material or place beyond its narrowed words, and a pixel whose normal has another shift than
-    `built.constant_shift`. The step of a span of one pixel does not count.
+    Flagged are a step or a bend that is not 0 in a component that `built` does not interpolate, a
+    step, material or place beyond its narrowed words, and a pixel whose normal has another shift
+    than `built.constant_shift`. Step and bend of a span of one pixel do not count.
     """
     longer = (spans["length"] > 1)[:, None]
     fixed = [not getattr(built, f"interpolate_{axis}") for axis in "xyz"]
     limit = 1 << (built.normal.bits - 1 - built.idle_step_bits)
     step = spans["step"]
-    bad = (longer & (fixed & (step != 0) | (step < -limit) | (step >= limit))).any(axis=1)
+    moves = (step != 0) | (spans["bend"] != 0)
+    bad = (longer & (fixed & moves | (step < -limit) | (step >= limit))).any(axis=1)
     right = spans["x"] + np.maximum(spans["length"], 1) - 1
     for largest, bits, idle in (
         (spans["material"], built.material_bits, built.idle_material_bits),
