@@ -69,6 +69,12 @@ class Mesh:
             faces, normals = faces[:, ::-1], normals[:, ::-1]
         return Mesh(vertices, faces, normals, self.degenerate)
 
+    def faceted(self) -> Mesh:
+        """A new Mesh with the normal of its face at every corner: flat shading by constant normals
+        (Starkey, "Shading Techniques", section 1)."""
+        normals = np.repeat(face_normals(self.vertices, self.faces)[:, None], 3, axis=1)
+        return Mesh(self.vertices, self.faces, normals, self.degenerate)
+
     def with_crease(self, crease: float) -> Mesh:
         """A new Mesh with normals computed from the faces (see `corner_normals`)."""
         normals = corner_normals(self.vertices, self.faces, crease)

@@ -8,6 +8,7 @@ value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All
     background = [0.0, 0.0, 0.0]    # red, green, blue, 0 to 1
     two_sided = false               # light both sides of surfaces, cull no back faces
     interpolation = "linear"        # as in the paper; or "normalized_edges"
+    shading = "smooth"              # of objects that do not say; "flat": one normal per face
 
     [light]
     direction = [-0.5, 0.6, 1.0]    # towards the light, any length
@@ -20,7 +21,8 @@ value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All
     target = [0, 0, 0]              # the point in the middle of the picture
     up = [0, 0, 1]
     height = 4.0                    # orthographic: scene units from top to bottom
-    fov = 30                        # perspective: degrees from top to bottom
+    fov = 30                        # perspective: degrees from top to bottom; or
+    screen_distance = 800           #   pixels from the eye to the screen
     near = 0.01                     # perspective: distance of the near plane
 
     [materials.NAME]                # eq. (3) of the paper; up to 16
@@ -35,6 +37,7 @@ value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All
     divisions = 10                  # the parameters of a shape's function (`shapes`) are keys
     mesh = "bunny.obj"              # instead of `shape`: a mesh file, relative to the scene file
     crease = 60                     # edges that bend more (degrees) are sharp; recomputes normals
+    shading = "flat"                # or "smooth"
     scale = 1.0                     # or [x, y, z]; applied first
     rotate = [0, 0, 0]              # degrees about x, y, z; applied after the scale
     translate = [0, 0, 0]           # applied last
@@ -78,6 +81,7 @@ SCENES = Path(__file__).parent.parent / "scenes"
 DEFAULT_SIZE = (640, 480)
 DEFAULT_BACKGROUND = (0.05, 0.06, 0.08)
 INTERPOLATIONS = ("linear", "normalized_edges")
+SHADINGS = ("smooth", "flat")
 
 SHAPES: dict[str, Callable[..., Mesh]] = {
     "sphere": shapes.sphere,
@@ -198,7 +202,7 @@ def _mesh_scene(path: Path, size: tuple[int, int] | None, config: Config) -> Sce
         table["direction"] = [0.35, 0.35, 1.0]
     root = _Table({"camera": table}, str(path))
     width, height = _size(root, size, config)
-    camera = _camera(root.table("camera"), mesh.vertices, width / height)
+    camera = _camera(root.table("camera"), mesh.vertices, width, height)
     return Scene(
         path.stem,
         width,
@@ -218,6 +222,7 @@ def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Confi
     background = root.triple("background", DEFAULT_BACKGROUND, 0.0, 1.0)
     two_sided = root.boolean("two_sided", False)
     interpolation = root.choice("interpolation", INTERPOLATIONS, "linear")
+    shading = root.choice("shading", SHADINGS, "smooth")
     materials: list[Material] = []
     indices: dict[str | None, int] = {}
     for name, table in root.tables_by_name("materials"):
@@ -225,7 +230,7 @@ def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Confi
         materials.append(_material(table))
     objects = []
     for number, table in enumerate(root.list_of_tables("objects")):
-        objects.append(_object(table, number, path, materials, indices))
+        objects.append(_object(table, number, path, materials, indices, shading))
     if not objects:
         raise root.error("objects", "missing: a scene needs at least one [[objects]] table")
     if len(materials) > config.materials:
@@ -233,7 +238,7 @@ def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Confi
             "materials", f"{len(materials)} materials, but the table has {config.materials} entries"
         )
     points = np.concatenate([o.mesh.vertices for o in objects])
-    camera = _camera(root.table("camera"), points, width / height)
+    camera = _camera(root.table("camera"), points, width, height)
     light = _light(root.table("light"), camera)
     root.finish()
     return Scene(
@@ -329,6 +334,7 @@ def _object(
     path: Path,
     materials: list[Material],
     indices: dict[str | None, int],
+    shading: str,
 ) -> SceneObject:
     shape = table.choice("shape", tuple(SHAPES), None)
     file = table.text("mesh", None)
@@ -346,6 +352,8 @@ def _object(
             mesh = load_mesh(path.parent / file, crease)
         except InputError as error:
             raise InputError(f"{table.where('mesh')}: {error}") from None
+    if table.choice("shading", SHADINGS, shading) == "flat":
+        mesh = mesh.faceted()
     if isinstance(table.value("scale", 1.0), list):
         scale = table.triple("scale", (1.0, 1.0, 1.0))
     else:
@@ -391,29 +399,39 @@ def _shape(table: _Table, shape: str) -> Mesh:
     return SHAPES[shape](**arguments)
 
 
-def _camera(table: _Table, points: Reals, aspect: float) -> Camera:
+def _camera(table: _Table, points: Reals, width: int, height_px: int) -> Camera:
     """The camera of a [camera] table. Missing keys are chosen so that `points` fill the picture.
 
-    points: float64[V, 3], all vertices of the scene. aspect: width / height.
+    points: float64[V, 3], all vertices of the scene. width, height_px: of the picture, pixels.
     """
+    aspect = width / height_px
     projection = table.choice("projection", ("orthographic", "perspective"), "orthographic")
     perspective = projection == "perspective"
     eye, direction = table.triple("eye", None), table.triple("direction", None)
     target, up = table.triple("target", None), table.triple("up", None)
     height, fov = table.real("height", None), table.real("fov", None)
-    near = table.real("near", None)
+    near, screen = table.real("near", None), table.real("screen_distance", None)
     if eye is not None and direction is not None:
         raise table.error("direction", "and eye cannot both be given")
     if height is not None and perspective:
         raise table.error("height", "is for orthographic cameras; perspective ones have fov")
-    for key, value in (("fov", fov), ("near", near)):
+    for key, value in (("fov", fov), ("near", near), ("screen_distance", screen)):
         if value is not None and not perspective:
             raise table.error(key, "is for perspective cameras; orthographic ones have height")
-    for key, value in (("height", height), ("near", near)):
+    for key, value in (("height", height), ("near", near), ("screen_distance", screen)):
         if value is not None and value <= 0:
             raise table.error(key, f"= {value:g} is not greater than 0")
     if fov is not None and not 1.0 <= fov <= 170.0:
         raise table.error("fov", f"= {fov:g} is outside [1, 170] degrees")
+    if screen is not None:
+        if fov is not None:
+            raise table.error("screen_distance", "and fov cannot both be given")
+        fov = math.degrees(2 * math.atan(height_px / 2 / screen))
+        if not 1.0 <= fov <= 170.0:
+            raise table.error(
+                "screen_distance",
+                f"= {screen:g} shows {fov:.4g} degrees from top to bottom, outside [1, 170]",
+            )
     if up is not None and not any(up):
         raise table.error("up", "= [0, 0, 0] has no direction")
     table.finish()
