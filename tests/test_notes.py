@@ -62,12 +62,12 @@ def test_the_scene_of_the_notes(files):
     # rho = 1000, theta = 45 and phi = 60 degrees, in this order after the screen distance.
     assert camera["eye"] == pytest.approx([250 * math.sqrt(6), 250 * math.sqrt(6), 500])
     (item,) = table["objects"]
-    assert item["mesh"] == item["material"] == "pyramid.des"
+    assert (item["mesh"], item["material"]) == ("pyramid.des", "pyramid")
     assert (item["scale"], item["rotate"]) == ([1.8, 1, 1], [0, 0, 0])
     assert item["translate"] == [200, 0, 0]
-    assert table["lights"] == [{"direction": [500, 500, 500], "intensity": 100}]
-    assert table["ambient_light"] == 50
-    material = table["materials"]["pyramid.des"]
+    assert table["lights"] == [{"direction": [500, 500, 500], "color": [100] * 3}]
+    assert table["ambient"] == [50] * 3
+    material = table["materials"]["pyramid"]
     assert material["ambient"] == material["diffuse"] == [0.2, 0.5, 0.9]
     assert material["specular"] == [0.4] * 3 and material["n"] == 20
     assert any("no exponent n: 20 is taken" in remark for remark in remarks)
@@ -75,7 +75,7 @@ def test_the_scene_of_the_notes(files):
 
 def test_an_exponent_that_is_there_is_taken_without_a_remark(files):
     table, remarks = scene_table(files({"// n specular exponent": "32 // n"}))
-    assert table["materials"]["pyramid.des"]["n"] == 32
+    assert table["materials"]["pyramid"]["n"] == 32
     assert not any("exponent" in remark for remark in remarks)
 
 

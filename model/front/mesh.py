@@ -16,9 +16,10 @@ import numpy as np
 
 from phong75.model.arrays import ArrayLike, Ints, Reals
 from phong75.model.frame import InputError
+from phong75.model.front import notes
 
 #: Supported mesh files, by suffix.
-MESH_SUFFIXES = (".obj", ".ply", ".stl", ".glb")
+MESH_SUFFIXES = (".obj", ".ply", ".stl", ".glb", notes.OBJECT_SUFFIX)
 
 #: Default crease angle, degrees: edges that bend by more than this stay sharp.
 DEFAULT_CREASE = 60.0
@@ -314,6 +315,8 @@ def _read_parts(path: Path) -> tuple[Reals, Ints, Reals | None]:
 
     The parts of the file are transformed to scene coordinates and joined. Raises InputError.
     """
+    if path.suffix.lower() == notes.OBJECT_SUFFIX:
+        return *notes.triangles(notes.read_object(path)), None
     import trimesh  # here because the import takes a third of a second; scenes of shapes skip it
 
     try:

@@ -26,6 +26,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from phong75.model.arrays import Ints, Reals
 from phong75.model.frame import InputError
 
 SCENE_SUFFIX, OBJECT_SUFFIX = ".scn", ".des"
@@ -151,6 +154,17 @@ def read_object(path: Path) -> NotesObject:
     return NotesObject(points, polygons, diffuse, specular, exponent)
 
 
+def triangles(item: NotesObject) -> tuple[Reals, Ints]:
+    """Points float64[V, 3] and triangles int64[F, 3] of an object, each polygon cut from its first
+    vertex: the notes' polygons are convex."""
+    faces = [
+        (corners[0], corners[k], corners[k + 1])
+        for corners in item.polygons
+        for k in range(1, len(corners) - 1)
+    ]
+    return np.array(item.points, np.float64), np.array(faces, np.int64)
+
+
 def scene_table(path: Path) -> tuple[dict[str, Any], list[str]]:
     """The scene file `path` and its object files as the table of a TOML scene file, and sentences
     about what was assumed. Raises InputError.
@@ -175,19 +189,20 @@ def scene_table(path: Path) -> tuple[dict[str, Any], list[str]]:
     objects: list[dict[str, Any]] = []
     for k in range(numbers.whole("the number of objects", 1, 1000)):
         file = numbers.name(f"the file name of object {k}")
-        entry: dict[str, Any] = {"mesh": file, "material": file}
+        material = str(Path(file).with_suffix(""))
+        entry: dict[str, Any] = {"mesh": file, "material": material}
         for key, what in (("scale", "scale factor"), ("rotate", "rotation angle"),
                           ("translate", "translation")):  # fmt: skip
             entry[key] = list(numbers.triple(*(f"the {what} of object {k} in {a}" for a in "xyz")))
         objects.append(entry)
-        if file in materials:
+        if material in materials:
             continue
         item = read_object(path.parent / file)
         if item.exponent is None:
             remarks.append(f"{file} has no exponent n: {DEFAULT_EXPONENT:g} is taken")
-        materials[file] = {
+        materials[material] = {
             "ambient": list(item.diffuse), "diffuse": list(item.diffuse),
-            "specular": [item.specular] * 3,
+            "specular": [item.specular] * 3, "W": 1.0,
             "n": DEFAULT_EXPONENT if item.exponent is None else item.exponent,
         }  # fmt: skip
     lights = []
@@ -195,17 +210,15 @@ def scene_table(path: Path) -> tuple[dict[str, Any], list[str]]:
         place = numbers.triple(*(f"{axis} of light {k}" for axis in "xyz"))
         if not any(place):
             raise numbers.error(f"light {k} is at the origin, where it has no direction")
-        lights.append({
-            "direction": list(place),
-            "intensity": numbers.real(f"the intensity of light {k}", 0.0),
-        })  # fmt: skip
-    ambient = numbers.real("the intensity of the ambient light", 0.0)
+        intensity = numbers.real(f"the intensity of light {k}", 0.0, 1e6)
+        lights.append({"direction": list(place), "color": [intensity] * 3})
+    ambient = numbers.real("the intensity of the ambient light", 0.0, 1e6)
     numbers.finish()
     remarks.append("lights are taken as directions from the origin, one screen unit as a pixel")
     return {
         "shading": "flat",
         "exposure": "Imax",
-        "ambient_light": ambient,
+        "ambient": [ambient] * 3,
         "camera": {
             "projection": "perspective", "eye": eye, "target": [0.0, 0.0, 0.0],
             "up": [0.0, 0.0, 1.0], "screen_distance": distance,
