@@ -112,6 +112,8 @@ def _front_end(request: RunRequest, folder: Path, steps: Steps) -> Stimulus:
             frame, exact, degenerate = spans.read_spans(request.spans, config), None, 0
         else:
             scene = load_scene(request.scene, request.size, config)
+            for remark in scene.remarks:
+                console.note(remark)
             front = front_end(scene, config, step.done)
             frame, exact, degenerate = front.frame, front.exact, front.degenerate_triangles
         built = _built(request, frame)

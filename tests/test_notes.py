@@ -3,10 +3,17 @@
 
 import math
 
+import numpy as np
 import pytest
+import tomli_w
 
+from phong75.model import twin
+from phong75.model.config import TECHNIQUES
 from phong75.model.frame import InputError
 from phong75.model.front.notes import read_object, scene_table
+from phong75.model.front.scene import load_scene
+from phong75.model.scene_to_frame import front_end
+from phong75.scripts.main import main
 
 #: The two examples of the notes, as they stand there.
 PYRAMID = """\
@@ -115,3 +122,61 @@ def test_an_empty_file(tmp_path):
     (tmp_path / "a.scn").write_text("// nothing\n")
     with pytest.raises(InputError, match="a.scn: line 1: the file ends where the screen distance"):
         scene_table(tmp_path / "a.scn")
+
+
+@pytest.mark.parametrize("place", [(0, 1, 1), (1, 0, 3), (-2, 1, 0.5)])
+def test_a_flat_face_has_the_intensity_of_the_notes(files, place):
+    """FB = 255 I/Imax per polygon, computed here from the formula of the notes."""
+    light = ", ".join(map(str, place))
+    path = files({"500, 500, 500, 100": f"{light}, 100"})
+    scene = load_scene(path)
+    front = front_end(scene, TECHNIQUES["flat"])
+    shown = {tuple(rgb) for rgb in twin.render(front.frame, TECHNIQUES["flat"]).rgb.tolist()}
+    corners = np.array([(0, 0, 0), (150, 0, 0), (150, 150, 0), (0, 150, 0), (75, 75, 150)])
+    corners = corners * (1.8, 1, 1) + (200, 0, 0)
+    kd, ks, n, ia, ip = np.array([0.2, 0.5, 0.9]), 0.4, 20, 50, 100
+    imax = max(kd * ia + ip * kd + ip * ks)
+    to_light = np.array(place) / np.linalg.norm(place)
+    v = np.array([math.cos(math.pi / 4) * math.sin(math.pi / 3)] * 2 + [math.cos(math.pi / 3)])
+    expected = []
+    for a, b, c in ((0, 1, 4), (1, 2, 4), (2, 3, 4), (0, 4, 3), (0, 3, 2)):
+        normal = np.cross(corners[b] - corners[a], corners[c] - corners[a])
+        normal /= np.linalg.norm(normal)
+        intensity = kd * ia
+        if (cosine := normal @ to_light) > 0:
+            r = 2 * cosine * normal - to_light
+            intensity = intensity + ip * kd * cosine + ip * ks * max(r @ v, 0) ** n
+        expected.append(255 * intensity / imax)
+    # Two faces look towards the eye.
+    assert 1 <= len(shown) <= 3
+    for rgb in shown:
+        assert min(np.abs(np.array(rgb) - e).max() for e in expected) < 0.51
+
+
+def test_a_converted_scene_gives_the_same_frame(files, capsys):
+    path = files()
+    out = path.parent / "below" / "converted.toml"
+    out.parent.mkdir()
+    assert main(["convert", str(path), "--out", str(out)]) == 0
+    captured = capsys.readouterr()
+    assert captured.out == f"{out}\n" and "no exponent n: 20 is taken" in captured.err
+    a, b = (front_end(load_scene(p)).frame for p in (path, out))
+    assert len(a.spans) and a.spans.tobytes() == b.spans.tobytes()
+    assert (twin.render(a).rgb == twin.render(b).rgb).all()
+    assert main(["convert", str(path), "--out", str(out)]) == 2
+    assert "exists: name another file" in capsys.readouterr().err
+
+
+def test_exposure(files):
+    path = files()
+    table, _ = scene_table(path)
+    toml = path.with_suffix(".toml")
+    scenes = {}
+    for exposure in ("Imax", 1 / 175, 1 / 350):
+        toml.write_text(tomli_w.dumps(table | {"exposure": exposure}))
+        scenes[exposure] = load_scene(toml, (320, 240))
+    (light,) = scenes["Imax"].lights
+    assert light.diffuse == pytest.approx([100 / 175] * 3)
+    assert scenes["Imax"].ambient == pytest.approx(scenes[1 / 175].ambient)
+    assert scenes[1 / 350].ambient == pytest.approx([50 / 350] * 3)
+    assert "Imax is 175" in scenes["Imax"].remarks[0] and not scenes[1 / 175].remarks

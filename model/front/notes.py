@@ -139,9 +139,7 @@ def read_object(path: Path) -> NotesObject:
     numbers = _Numbers(path)
     count = numbers.whole("the number of points", 3)
     faces = numbers.whole("the number of polygons", 1)
-    points = [
-        numbers.triple(*(f"{axis} of point {k}" for axis in "xyz")) for k in range(count)
-    ]
+    points = [numbers.triple(*(f"{axis} of point {k}" for axis in "xyz")) for k in range(count)]
     polygons = []
     for k in range(faces):
         corners = numbers.whole(f"the number of vertices of polygon {k}", 3, count)

@@ -366,8 +366,8 @@ def _scaled(colour: Colour, factor: float) -> Colour:
 
 
 def _exposed(light: Light, factor: float) -> Light:
-    parts = ("ambient", "diffuse", "specular")
-    return replace(light, **{part: _scaled(getattr(light, part), factor) for part in parts})
+    parts = (_scaled(part, factor) for part in (light.ambient, light.diffuse, light.specular))
+    return Light(light.direction, *parts, light.name)
 
 
 def _read_toml(path: Path) -> dict[str, Any]:
