@@ -366,8 +366,12 @@ def _scaled(colour: Colour, factor: float) -> Colour:
 
 
 def _exposed(light: Light, factor: float) -> Light:
-    parts = (_scaled(part, factor) for part in (light.ambient, light.diffuse, light.specular))
-    return Light(light.direction, *parts, light.name)
+    return replace(
+        light,
+        ambient=_scaled(light.ambient, factor),
+        diffuse=_scaled(light.diffuse, factor),
+        specular=_scaled(light.specular, factor),
+    )
 
 
 def _read_toml(path: Path) -> dict[str, Any]:
