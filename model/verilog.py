@@ -12,13 +12,21 @@ from phong75.model.tables import Table, tables
 from phong75.model.twin.pruning.constant_multiplier import levels
 
 
+#: Widest literal, in bits: Verilator reads no literal of more than 65 536.
+_LITERAL_BITS = 1 << 15
+
+
 def _constant(table: Table) -> str:
     """The words of `table` as one Verilog constant, word 0 in the lowest bits."""
-    bits = table.word_bits
+    bits = table.word_bits * len(table.words)
     packed = 0
     for k, word in enumerate(table.words.tolist()):
-        packed |= word << (k * bits)
-    return f"{bits * len(table.words)}'h{packed:x}"
+        packed |= word << (k * table.word_bits)
+    literals = []
+    for low in range(0, bits, _LITERAL_BITS):
+        width = min(_LITERAL_BITS, bits - low)
+        literals.append(f"{width}'h{packed >> low & (1 << width) - 1:x}")
+    return literals[0] if len(literals) == 1 else f"{{{', '.join(reversed(literals))}}}"
 
 
 def header(config: Config) -> str:
