@@ -253,6 +253,11 @@ class Config:
 
     # -- derived -----------------------------------------------------------------------------------
     @property
+    def white(self) -> int:
+        """The code of S = 1, the largest of `colour_bits`."""
+        return (1 << self.colour_bits) - 1
+
+    @property
     def materials(self) -> int:
         """Number of entries of the material table."""
         return 1 << self.material_bits

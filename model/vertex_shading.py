@@ -61,4 +61,4 @@ def exact_intensities(normal: Reals, material: Ints, exact: ExactFrame, two_side
 
     normal, material: as above. exact: eye and materials before rounding. two_sided: shade |Zn|.
     """
-    return reference.shade_exact(normal, material, exact, two_sided) / 255
+    return reference.shade_exact(normal, material, exact, two_sided, white=1)

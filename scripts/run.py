@@ -172,7 +172,9 @@ def _report(
     codes, ports = _common(simulation, ideal.ports)
     scene_error = None
     if ideal.scene is not None:
-        scene_error = metrics.error_metrics(*_common(simulation, ideal.scene))
+        scene_error = metrics.error_metrics(
+            *_common(simulation, ideal.scene), request.config.white
+        )
     return run_report.make_report(
         scene=Path(request.spans or request.scene).stem,
         frame=stimulus.frame,
@@ -182,7 +184,7 @@ def _report(
         simulation=simulation,
         comparison=comparison,
         zero_normals=twin.zero_normals(stimulus.frame, request.config),
-        error=metrics.error_metrics(codes, ports),
+        error=metrics.error_metrics(codes, ports, request.config.white),
         bound_lsb=None if ideal.bound is None else float(ideal.bound),
         pruned_differ=pruned_differ,
         input_error=scene_error,
@@ -201,18 +203,18 @@ def _common(simulation: SimResult, ideal: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def _pictures(
-    folder: Path, name: str, frame: Frame, expected: twin.Pixels, simulation: SimResult,
-    ideal: Ideal, steps: Steps,
+    folder: Path, name: str, frame: Frame, config: Config, expected: twin.Pixels,
+    simulation: SimResult, ideal: Ideal, steps: Steps,
 ) -> None:  # fmt: skip
     """Write the picture of the RTL, that of the reference, and the map of the error, which shows
     `name`."""
     with steps.step("pictures"):
         x, y = simulation.pixels.x, simulation.pixels.y
-        frame_picture = pictures.canvas(frame, x, y, simulation.pixels.rgb)
-        pictures.write_picture(folder / "frame.png", frame_picture)
+        frame_picture = pictures.canvas(frame, x, y, simulation.pixels.rgb, config)
+        pictures.write_picture(folder / "frame.png", frame_picture, config)
         rounded = metrics.rounded(ideal.ports)
-        reference_picture = pictures.canvas(frame, expected.x, expected.y, rounded)
-        pictures.write_picture(folder / "reference.png", reference_picture)
+        reference_picture = pictures.canvas(frame, expected.x, expected.y, rounded, config)
+        pictures.write_picture(folder / "reference.png", reference_picture, config)
         codes, ports = _common(simulation, ideal.ports)
         error = np.abs(codes - ports)
         both = len(error)
@@ -243,7 +245,7 @@ def run(request: RunRequest, simulate: Simulate, steps: Steps) -> dict:
         comparison = metrics.compare(expected, simulation.pixels)
         report = _report(request, stimulus, comparison, pruned_differ, simulation, ideal, steps)
         name = f"{report['scene']}, {report['technique']}"
-        _pictures(folder, name, stimulus.frame, expected, simulation, ideal, steps)
+        _pictures(folder, name, stimulus.frame, config, expected, simulation, ideal, steps)
         text = json.dumps(report, indent=2, allow_nan=False) + "\n"
         (folder / "report.json").write_text(text, encoding="utf-8")
         _explain(stimulus, comparison, config)

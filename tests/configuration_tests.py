@@ -27,10 +27,11 @@ from phong75.model.front.scene import load_scene
 from phong75.model.registers import writes
 from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import illegal_spans
-from phong75.model.studies.methods import CONFIGS, of_width
+from phong75.model.studies.methods import CONFIGS
 from phong75.model.studies.random_frames import random_frame
 from phong75.model.twin.core.register_map import unsupported_write, vanishing_exponent
 from phong75.model.twin.pruning.span_guard import span_guard
+from phong75.scripts.configurations import CONFIGURATIONS
 from phong75.sim.build import Bench
 from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 from phong75.sim.latency import latencies
@@ -453,7 +454,7 @@ def _method(name: str) -> ConfigurationTest:
 def _wide() -> ConfigurationTest:
     """Words of 22 bits, whose tables are wider than Verilator's longest literal, and 12-bit
     colours."""
-    config = of_width(22, name="wide", colour_bits=12)
+    config = CONFIGURATIONS["colour_12"]
     frames = [front_end(load_scene(*scene), config).frame for scene in SCENES]
     return ConfigurationTest(config, *map(SimJob, frames))
 
@@ -464,7 +465,7 @@ CONFIGURATION_TESTS: dict[str, Callable[[], ConfigurationTest]] = {
     **{name: functools.partial(_alone, name) for name in ALONE},
     "hold_unlit": _hold,
     "narrow": lambda: _of(*narrow()),
-    "wide": _wide,
+    "colour_12": _wide,
     "single": lambda: _single(),
     "single grey": lambda: _single(grey),
     "single matte": lambda: _single(dull, one_sided),

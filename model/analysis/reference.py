@@ -23,8 +23,9 @@ def shade(
     exponent: Reals,
     eye: Reals,
     two_sided: bool,
+    white: int = DEFAULT.white,
 ) -> Reals:
-    """255 clamp(S, 0, 1) by the paper's eq. (3), float64[n, 3].
+    """white clamp(S, 0, 1) by the paper's eq. (3), float64[n, 3]; white: the code of S = 1.
 
     normal: float64[n, 3], any length, light frame.
     cp_d, cp_rest: float64[n, 3], Cp d and Cp (1 - d), 0 to 1.
@@ -49,7 +50,7 @@ def shade(
     w = weight[row, left] + (weight[row, left + 1] - weight[row, left]) * (position - left)
     s = cp_d + np.where(lit, cos_i, 0)[:, None] * cp_rest
     s = s + np.where(lit, w * cos_s**exponent, 0)[:, None]
-    return 255 * np.clip(s, 0, 1)
+    return white * np.clip(s, 0, 1)
 
 
 def shade_lights(
@@ -62,8 +63,9 @@ def shade_lights(
     exponent: Reals,
     eyes: Reals,
     two_sided: bool,
+    white: int = DEFAULT.white,
 ) -> Reals:
-    """255 clamp(I, 0, 1), float64[n, 3], of the illumination model with several lights:
+    """white clamp(I, 0, 1), float64[n, 3], of the illumination model with several lights:
 
     I = e + ka Ia + sum over lights of (ka La + kd Ld (N.L) + ks Ls W(i) (R.V)**n).
 
@@ -90,7 +92,7 @@ def shade_lights(
         specular = w * np.maximum(cos_s, 0) ** exponent
         terms = kd[material] * cos_i[:, None] + ks[material] * specular[:, None]
         total = total + np.where(lit, terms, 0)
-    return 255 * np.clip(total, 0, 1)
+    return white * np.clip(total, 0, 1)
 
 
 def _pixels(spans: Spans, start: Reals, step: Reals) -> tuple[Reals, Ints]:
@@ -125,7 +127,7 @@ def zero_normals(frame: Frame) -> int:
 
 
 def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:
-    """255 clamp(S, 0, 1) from the integers at the ports and in the tables, float64[n, 3].
+    """white clamp(S, 0, 1) from the integers at the ports and in the tables, float64[n, 3].
 
     Rows are in the order of the stream. The comparison with the pipeline's codes shows the error of
     the pipeline alone.
@@ -133,7 +135,7 @@ def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:
     start, step = frame.spans["start"].astype(float), frame.spans["step"].astype(float)
     if config.technique != "phong":
         intensity, _ = _pixels(frame.spans, start, step)
-        return 255 * np.clip(intensity / config.normal.one, 0, 1)
+        return config.white * np.clip(intensity / config.normal.one, 0, 1)
     normal, material = _pixels(frame.spans, start, step)
     table, real = frame.materials, config.coefficient.real
     if config.sums_lights or frame.further or table.highlight is not None:
@@ -144,11 +146,12 @@ def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:
             np.stack([real(light.highlight) for light in lights]),
             real(table.weight), config.exponent.real(table.exponent),
             np.stack([eye_of(light.half_vector) for light in lights]), frame.two_sided,
+            config.white,
         )  # fmt: skip
     return shade(
         normal, real(table.ambient)[material], real(table.diffuse)[material],
         real(table.weight)[material], config.exponent.real(table.exponent)[material],
-        eye_of(frame.half_vector), frame.two_sided,
+        eye_of(frame.half_vector), frame.two_sided, config.white,
     )  # fmt: skip
 
 
@@ -174,19 +177,25 @@ def shared_length(frame: Frame) -> Reals:
 
 
 def render_exact(frame: Frame, exact: ExactFrame, config: Config = DEFAULT) -> np.ndarray:
-    """255 clamp(S, 0, 1) from the scene's values before any rounding, float64[n, 3].
+    """white clamp(S, 0, 1) from the scene's values before any rounding, float64[n, 3].
 
     exact: the values that were rounded to `frame`. The comparison with the pipeline's codes also
     shows the error of rounding the input.
     """
     normal, m = _pixels(frame.spans, exact.start, exact.step)
     if config.technique != "phong":
-        return 255 * np.clip(normal, 0, 1)
-    return shade_exact(normal, m, exact, frame.two_sided)
+        return config.white * np.clip(normal, 0, 1)
+    return shade_exact(normal, m, exact, frame.two_sided, config.white)
 
 
-def shade_exact(normal: Reals, material: Ints, exact: ExactFrame, two_sided: bool) -> Reals:
-    """255 clamp(S, 0, 1) of normals before any rounding, float64[n, 3].
+def shade_exact(
+    normal: Reals,
+    material: Ints,
+    exact: ExactFrame,
+    two_sided: bool,
+    white: int = DEFAULT.white,
+) -> Reals:
+    """white clamp(S, 0, 1) of normals before any rounding, float64[n, 3].
 
     normal: float64[n, 3], any length, in the first light's frame. material: int64[n].
     """
@@ -194,7 +203,7 @@ def shade_exact(normal: Reals, material: Ints, exact: ExactFrame, two_sided: boo
     if not further and (exact.highlight == 1).all():
         return shade(
             normal, exact.ambient[m], exact.diffuse[m], exact.weight[m], exact.exponent[m],
-            exact.eye, two_sided,
+            exact.eye, two_sided, white,
         )  # fmt: skip
     length = np.sqrt((normal**2).sum(axis=1))
     unit = normal / np.where(length > 0, length, 1)[:, None]
@@ -203,5 +212,5 @@ def shade_exact(normal: Reals, material: Ints, exact: ExactFrame, two_sided: boo
         np.stack([exact.diffuse, *(light.diffuse for light in further)]),
         np.stack([exact.highlight, *(light.highlight for light in further)]),
         exact.weight, exact.exponent,
-        np.stack([exact.eye, *(light.eye for light in further)]), two_sided,
+        np.stack([exact.eye, *(light.eye for light in further)]), two_sided, white,
     )  # fmt: skip
