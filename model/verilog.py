@@ -11,7 +11,6 @@ from phong75.model.spans import record_bits, span_fields
 from phong75.model.tables import Table, tables
 from phong75.model.twin.pruning.constant_multiplier import levels
 
-
 #: Widest literal, in bits: Verilator reads no literal of more than 65 536.
 _LITERAL_BITS = 1 << 15
 

@@ -172,9 +172,7 @@ def _report(
     codes, ports = _common(simulation, ideal.ports)
     scene_error = None
     if ideal.scene is not None:
-        scene_error = metrics.error_metrics(
-            *_common(simulation, ideal.scene), request.config.white
-        )
+        scene_error = metrics.error_metrics(*_common(simulation, ideal.scene), request.config.white)
     return run_report.make_report(
         scene=Path(request.spans or request.scene).stem,
         frame=stimulus.frame,

@@ -75,9 +75,7 @@ def rounded(exact: ArrayLike) -> Ints:
     return np.floor(np.asarray(exact, np.float64) + 0.5).astype(np.int64)
 
 
-def error_metrics(
-    codes: ArrayLike, exact: ArrayLike, white: int = DEFAULT.white
-) -> dict[str, Any]:
+def error_metrics(codes: ArrayLike, exact: ArrayLike, white: int = DEFAULT.white) -> dict[str, Any]:
     """Error of `codes` (integers[n, 3]) against `exact` = white clamp(S, 0, 1) (float64[n, 3]).
 
     `exact` is not rounded, so that perfect codes have errors of up to 1/2 LSB. Pass only shaded

@@ -25,7 +25,7 @@ def shade(
     two_sided: bool,
     white: int = DEFAULT.white,
 ) -> Reals:
-    """white clamp(S, 0, 1) by the paper's eq. (3), float64[n, 3]; white: the code of S = 1.
+    """White clamp(S, 0, 1) by the paper's eq. (3), float64[n, 3]; white: the code of S = 1.
 
     normal: float64[n, 3], any length, light frame.
     cp_d, cp_rest: float64[n, 3], Cp d and Cp (1 - d), 0 to 1.
@@ -65,7 +65,7 @@ def shade_lights(
     two_sided: bool,
     white: int = DEFAULT.white,
 ) -> Reals:
-    """white clamp(I, 0, 1), float64[n, 3], of the illumination model with several lights:
+    """White clamp(I, 0, 1), float64[n, 3], of the illumination model with several lights:
 
     I = e + ka Ia + sum over lights of (ka La + kd Ld (N.L) + ks Ls W(i) (R.V)**n).
 
@@ -127,7 +127,7 @@ def zero_normals(frame: Frame) -> int:
 
 
 def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:
-    """white clamp(S, 0, 1) from the integers at the ports and in the tables, float64[n, 3].
+    """White clamp(S, 0, 1) from the integers at the ports and in the tables, float64[n, 3].
 
     Rows are in the order of the stream. The comparison with the pipeline's codes shows the error of
     the pipeline alone.
@@ -177,7 +177,7 @@ def shared_length(frame: Frame) -> Reals:
 
 
 def render_exact(frame: Frame, exact: ExactFrame, config: Config = DEFAULT) -> np.ndarray:
-    """white clamp(S, 0, 1) from the scene's values before any rounding, float64[n, 3].
+    """White clamp(S, 0, 1) from the scene's values before any rounding, float64[n, 3].
 
     exact: the values that were rounded to `frame`. The comparison with the pipeline's codes also
     shows the error of rounding the input.
@@ -195,7 +195,7 @@ def shade_exact(
     two_sided: bool,
     white: int = DEFAULT.white,
 ) -> Reals:
-    """white clamp(S, 0, 1) of normals before any rounding, float64[n, 3].
+    """White clamp(S, 0, 1) of normals before any rounding, float64[n, 3].
 
     normal: float64[n, 3], any length, in the first light's frame. material: int64[n].
     """
