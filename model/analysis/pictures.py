@@ -51,9 +51,9 @@ def canvas(
 ) -> NDArray[np.uint8 | np.uint16]:
     """The picture of the pixels at `x`, `y` (int[n]) with codes `rgb` (int[n, 3]).
 
-    Returns uint8[height, width, 3], or uint16 if `config.colour_bits` is more than 8. Positions without a pixel show the frame's background. Of two
-    pixels at one position the later one is shown. Pixels outside the frame, which only a faulty
-    stream has, are left out.
+    Returns uint8[height, width, 3], or uint16 if `config.colour_bits` is more than 8. Positions
+    without a pixel show the frame's background. Of two pixels at one position the later one is
+    shown. Pixels outside the frame, which only a faulty stream has, are left out.
     """
     codes = np.uint8 if config.colour_bits <= 8 else np.uint16
     picture = np.empty((frame.height, frame.width, 3), codes)
