@@ -192,6 +192,18 @@ def fitted(config: Config, frame: Frame, units: int = 1) -> Config:
         raise InputError(f"{error}; lights of the frame: {frame.lights}") from None
 
 
+def with_lights(config: Config, frame: Frame) -> Config:
+    """`config` if it sums lights, else with the lights of `frame` (see `fitted`).
+
+    Raises InputError if `frame` has more lights than `config`, or `config` cannot sum lights.
+    """
+    if not config.sums_lights:
+        return fitted(config, frame)
+    if frame.lights > config.lights:
+        raise InputError(f"{frame.lights} lights in a build for {config.lights}")
+    return config
+
+
 @dataclass(repr=False)
 class ExactLight:
     """A `FurtherLight` before any rounding, in float64.

@@ -123,6 +123,11 @@ def record_bits(config: Config) -> int:
     return bits
 
 
+def turns(frame: Frame, config: Config) -> int:
+    """How many records a span of `frame` has: the turns of its lights."""
+    return -(-frame.lights // config.span_units) if config.sums_lights else 1
+
+
 def illegal_spans(frame: Frame, config: Config) -> Flags:
     """Which spans the RTL flags as illegal, bool[n]: a component of the normal leaves its format
     between the first and the last pixel, for any light. The components are linear, so both ends
@@ -180,10 +185,10 @@ def pack_frame(frame: Frame, config: Config) -> bytes:
         raise ValueError(f"{frame.lights} lights in a build for {config.lights}")
     if not config.sums_lights:
         return pack(frame.spans, config, frame.half_vector)
-    units, turns = config.units, -(-frame.lights // config.units)
+    units, count = config.units, turns(frame, config)
     nothing = np.zeros((len(frame.spans), 3), np.int64)
-    records = np.zeros((len(frame.spans), turns, record_bits(config) // 8), np.uint8)
-    for turn in range(turns):
+    records = np.zeros((len(frame.spans), count, record_bits(config) // 8), np.uint8)
+    for turn in range(count):
         lights = [
             frame.light(number, config) if number < frame.lights else None
             for number in range(turn * units, (turn + 1) * units)
@@ -191,7 +196,7 @@ def pack_frame(frame: Frame, config: Config) -> bytes:
         values = [(v.start, v.step) if v else (nothing, nothing) for v in lights]
         spans = frame.spans.copy()
         spans["start"], spans["step"] = values[0]
-        if turn < turns - 1:
+        if turn < count - 1:
             spans["last"] = False
         body = _pack(spans, config, values)
         records[:, turn] = np.frombuffer(body, np.uint8).reshape(len(spans), -1)
@@ -419,17 +424,17 @@ def _frame(header: dict[str, Any], body: bytes, config: Config) -> Frame:
     materials, named = _materials(header["materials"], config)
     further = _lights(header, materials, config)
 
-    turns = -(-(1 + len(further)) // config.span_units)
-    size = turns * record_bits(config) // 8
+    each = -(-(1 + len(further)) // config.span_units)  # records a span
+    size = each * record_bits(config) // 8
     count = _integer("spans", header["spans"], 0, None)
     if len(body) != count * size:
         raise InputError(
             f"{count} spans of {size} bytes are announced, but {len(body)} bytes follow line 2"
         )
     records, values = _unpack(body, config)
-    spans = records[turns - 1 :: turns].copy()  # the last record has `last`
+    spans = records[each - 1 :: each].copy()  # the last record has `last`
     if config.sums_lights:
-        _read_turns(spans, records, values, further, turns)
+        _read_turns(spans, records, values, further, each)
     _reject("length is zero", spans["length"] == 0)
     _reject(
         f"reaches beyond the width of {width}",
@@ -488,19 +493,19 @@ def _read_turns(
     records: Spans,
     values: list[tuple[Ints, Ints]],
     further: list[FurtherLight],
-    turns: int,
+    each: int,
 ) -> None:
     """Give `spans` (SPAN_DTYPE[n]) and the `further` lights their start and step, from the
-    `records` of all turns. values: start and step of each unit in all records."""
+    `records`, `each` a span. values: start and step of each unit in all records."""
     for name in ("x", "y", "length", "material"):
-        same = records[name].reshape(-1, turns) == spans[name][:, None]
+        same = records[name].reshape(-1, each) == spans[name][:, None]
         _reject(f"its records differ in {name}", np.any(~same, axis=1))
-    early = records["last"].reshape(-1, turns)[:, :-1]
+    early = records["last"].reshape(-1, each)[:, :-1]
     _reject("a record before its last one is marked as the last", np.any(early, axis=1))
     units = len(values)
-    for number in range(turns * units):
+    for number in range(each * units):
         turn, unit = divmod(number, units)
-        start, step = (v[turn::turns].copy() for v in values[unit])
+        start, step = (v[turn::each].copy() for v in values[unit])
         if number == 0:
             spans["start"], spans["step"] = start, step
         elif number <= len(further):

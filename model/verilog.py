@@ -6,7 +6,7 @@ from __future__ import annotations
 import dataclasses
 
 from phong75.model.config import Config, Format
-from phong75.model.registers import FIELDS
+from phong75.model.registers import FIELDS, address_bits
 from phong75.model.spans import record_bits, span_fields
 from phong75.model.tables import Table, tables
 from phong75.model.twin.pruning.constant_multiplier import levels
@@ -61,6 +61,7 @@ def header(config: Config) -> str:
     last = span_fields(config)[-1]  # the flag that the stream carries as s_axis_tlast, above it
     lines.append(f"`define PHONG_SPAN_BITS {last.lsb}")
     lines.append(f"`define PHONG_RECORD_BITS {record_bits(config)}")
+    lines.append(f"`define PHONG_ADDRESS_BITS {address_bits(config)}")
     for name in ("sums_lights", "turns", "turn_bits", "light_bits"):
         lines.append(f"`define PHONG_{name.upper()} {int(getattr(config, name))}")
     lines += [f"`define PHONG_FIELD_{name.upper()} {index}" for name, index in FIELDS.items()]
