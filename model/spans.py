@@ -44,6 +44,7 @@ error shows the same error again.
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -413,10 +414,7 @@ def _frame(header: dict[str, Any], body: bytes, config: Config) -> Frame:
         raise InputError("record: the layout is not that of the pipeline")
     width = _integer("width", header["width"], 1, config.max_size)
     height = _integer("height", header["height"], 1, config.max_size)
-    fmt = config.half_vector
-    hx, hz = _integers("half_vector", header["half_vector"], 2, fmt.min, fmt.max)
-    if not (hx or hz):
-        raise InputError("half_vector has length zero")
+    hx, hz = _half_vector("half_vector", header["half_vector"], config)
     if not isinstance(header["two_sided"], bool):
         raise InputError("two_sided is neither true nor false")
     white = (1 << config.colour_bits) - 1
@@ -461,14 +459,12 @@ def _lights(header: dict[str, Any], table: MaterialTable, config: Config) -> lis
     if not isinstance(lights, list) or not 1 <= len(lights) <= config.lights:
         raise InputError(f"lights is not a list of 1 to {config.lights} lights")
     used = [row["index"] for row in header["materials"]]
-    half, most = config.half_vector, config.coefficient.max
+    most = config.coefficient.max
     found = []
     for number, light in enumerate(lights):
         name = f"lights[{number}]"
         _keys(name, light, ["half_vector", "diffuse", "highlight"])
-        hx, hz = _integers(f"{name}.half_vector", light["half_vector"], 2, half.min, half.max)
-        if not (hx or hz):
-            raise InputError(f"{name}.half_vector has length zero")
+        hx, hz = _half_vector(f"{name}.half_vector", light["half_vector"], config)
         columns = {}
         for key in ("diffuse", "highlight"):
             rows = light[key]
@@ -560,6 +556,19 @@ def _integer(name: str, value: Any, low: int, high: int | None) -> int:
         shown = json.dumps(value)
         raise InputError(f"{name} is {shown[:40]}, not a whole number {limits}")
     return value
+
+
+def _half_vector(name: str, value: Any, config: Config) -> tuple[int, int]:
+    """`value` as (hx, hz) in `Config.half_vector`, if its length is 1.
+
+    Rounding moves one component by at most 1/2 LSB, and the clamp below 1 the other one by at most
+    1 LSB, so the length by at most sqrt(5)/2 LSB. Raises InputError.
+    """
+    fmt = config.half_vector
+    hx, hz = _integers(name, value, 2, fmt.min, fmt.max)
+    if not abs(math.hypot(hx, hz) - fmt.one) <= math.sqrt(5) / 2:
+        raise InputError(f"{name} has length {math.hypot(hx, hz) / fmt.one:.6f}, not 1")
+    return hx, hz
 
 
 def _integers(name: str, value: Any, count: int, low: int, high: int) -> list[int]:
