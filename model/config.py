@@ -21,6 +21,20 @@ import numpy as np
 
 from phong75.model.arrays import ArrayLike, Flags, Ints, Reals
 
+#: The largest number of lights of a build.
+MAX_LIGHTS = 8
+
+#: Possible numbers of shading units side by side.
+UNITS = (1, 2, 4, 8)
+
+#: Fields of `Config` that keep their default in a build that sums lights: each describes the normal
+#: in the one light's frame, or a value that each light has for itself.
+ONE_LIGHT_ONLY = (
+    "normal_order", "interpolate_x", "interpolate_y", "interpolate_z", "constant_shift",
+    "idle_step_bits", "hold_unlit", "constant_half_vector", "constant_exponent", "constant_weight",
+    "constant_ambient", "constant_diffuse",
+)  # fmt: skip
+
 
 @dataclass(frozen=True)
 class Format:
@@ -112,8 +126,9 @@ def _unsigned(integer: int, fraction: int) -> Any:
 class Config:
     """Formats, table sizes and features of one pipeline, in the order of the data.
 
-    Raises ValueError if a choice is not one of its names, `channels` is neither 1 nor 3, or
-    `normal_order` is neither 1 nor 2, or 2 where no normal is interpolated.
+    Raises ValueError if a choice is not one of its names, `channels` is neither 1 nor 3,
+    `normal_order` is neither 1 nor 2, or 2 where no normal is interpolated, or the lights do not
+    fit their units or the features (see `_check_lights`).
     """
 
     name: str = "default"
@@ -129,6 +144,25 @@ class Config:
             raise ValueError(f"normal_order is {self.normal_order}, not 1 or 2")
         if self.normal_order == 2 and (self.technique != "phong" or self.spans_carry_squares):
             raise ValueError("normal_order is 2, but spans carry no normal")
+        self._check_lights()
+
+    def _check_lights(self) -> None:
+        """Raise ValueError for lights or units out of range, and for a feature that rtl/lights does
+        not have."""
+        if not 1 <= self.lights <= MAX_LIGHTS:
+            raise ValueError(f"lights is {self.lights}, not 1 to {MAX_LIGHTS}")
+        if self.units not in UNITS or self.units > self.lights:
+            raise ValueError(
+                f"units is {self.units}, not one of {', '.join(map(str, UNITS))} and at most the "
+                f"number of lights"
+            )
+        if not self.sums_lights:
+            return
+        if self.normal_method != "normalize":
+            raise ValueError(f"normal_method `{self.normal_method}` has one light")
+        for f in dataclasses.fields(self):
+            if f.name in ONE_LIGHT_ONLY and getattr(self, f.name) != f.default:
+                raise ValueError(f"{f.name} is for builds with one white light")
 
     # -- technique ---------------------------------------------------------------------------------
     # phong interpolates normals, gouraud the intensities of vertices; flat holds one intensity per
@@ -171,6 +205,13 @@ class Config:
     power: Format = _unsigned(0, 18)  # cos(s)**n
     weight: Format = _unsigned(1, 17)  # W(i)
     intensity: Format = _unsigned(1, 24)  # S of one channel, before it is scaled to the code
+
+    # -- lights ------------------------------------------------------------------------------------
+    # 1 light that is not coloured: eq. (3), in rtl/core/; else the sum over lights, in rtl/lights/.
+    lights: int = 1  # most lights of a frame, 1 to 8
+    units: int = 1  # shading units side by side: 1, 2, 4 or 8, at most `lights`
+    highlight_colour: bool = False  # a colour for each light's highlight, or a sum beyond Cp <= 1
+    highlight: Format = _unsigned(0, 18)  # W(i) cos(s)**n, rounded before it is coloured
 
     # -- features ----------------------------------------------------------------------------------
     # A feature that a scene does not need is left out: see model/analysis/pruning.py. The comment
@@ -219,6 +260,11 @@ class Config:
 
     # -- derived -----------------------------------------------------------------------------------
     @property
+    def white(self) -> int:
+        """The code of S = 1, the largest of `colour_bits`."""
+        return (1 << self.colour_bits) - 1
+
+    @property
     def materials(self) -> int:
         """Number of entries of the material table."""
         return 1 << self.material_bits
@@ -251,6 +297,31 @@ class Config:
         """Whether a span carries squares of the normal in place of its x and y (see
         `phong75.model.quadratic_spans`)."""
         return self.technique == "phong" and self.normal_method == "quadratic_spans"
+
+    @property
+    def sums_lights(self) -> bool:
+        """Whether a pixel is a sum over lights (rtl/lights/), not eq. (3) for one white light."""
+        return self.technique == "phong" and (self.lights > 1 or self.highlight_colour)
+
+    @property
+    def span_units(self) -> int:
+        """How many lights one beat of a span serves: each has a start and a step in it."""
+        return self.units if self.sums_lights else 1
+
+    @property
+    def turns(self) -> int:
+        """Beats of a span, and clocks of a pixel, of a frame with all lights."""
+        return -(-self.lights // self.units) if self.sums_lights else 1
+
+    @property
+    def turn_bits(self) -> int:
+        """Width of the number of a turn, at least 1."""
+        return max((self.turns - 1).bit_length(), 1)
+
+    @property
+    def light_bits(self) -> int:
+        """Width of the light's number in an address of the write port; 0 for one light."""
+        return (self.lights - 1).bit_length() if self.sums_lights else 0
 
     @property
     def max_size(self) -> int:

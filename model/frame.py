@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from phong75.model.arrays import ArrayLike, Ints, Reals, Spans
+from phong75.model.arrays import ArrayLike, Flags, Ints, Reals, Spans
 from phong75.model.config import Config
 
 #: One span: `length` pixels from (x, y) to the right.
@@ -44,12 +44,17 @@ class MaterialTable:
     diffuse: int64[M, 3], Cp (1 - d) in `coefficient`; ambient + diffuse = Cp.
     weight: int64[M, P], W at P = `Config.weight_points` equally spaced Zn from 0 to 1, in
     `coefficient`. exponent: int64[M], n in `exponent` (u8.9).
+
+    With lights (`Config.sums_lights`) ambient is the sum of what needs no direction, e + ka Ia and
+    ka La of every light; diffuse is kd Ld of the first light, and highlight: int64[M, 3] is ks Ls
+    of the first light in `coefficient`. highlight is None where it is 1 everywhere.
     """
 
     ambient: Ints
     diffuse: Ints
     weight: Ints
     exponent: Ints
+    highlight: Ints | None = None
 
     def __repr__(self) -> str:
         terms = np.concatenate([self.ambient, self.diffuse, self.weight], axis=1)
@@ -91,13 +96,30 @@ class MaterialTable:
 
 
 @dataclass(repr=False)
+class FurtherLight:
+    """A light of a frame beside the first one, in codes.
+
+    half_vector: (hx, hz) in `half_vector`, in the frame of this light. start, step: int64[n, 3], as
+    those of the spans, in the frame of this light. diffuse: int64[M, 3], kd Ld. highlight:
+    int64[M, 3], ks Ls.
+    """
+
+    half_vector: tuple[int, int]
+    start: Ints
+    step: Ints
+    diffuse: Ints
+    highlight: Ints
+
+
+@dataclass(repr=False)
 class Frame:
     """One picture as the hardware sees it. All arrays hold codes (integers).
 
     width, height: pixels. half_vector: (hx, hz) in `half_vector` (s0.17), the half vector h between
     the light k = (0, 0, 1) and the eye u in the light frame, where u_y = 0 and u = 2 (h.k) h - k.
     The length of h should be 1 but for its rounding. two_sided: shade |Zn|. background: codes of
-    red, green, blue for the pixels that no span covers. spans: SPAN_DTYPE[n].
+    red, green, blue for the pixels that no span covers. spans: SPAN_DTYPE[n]; start and step are in
+    the frame of the first light. further: the other lights, at most 7.
     """
 
     width: int
@@ -107,10 +129,98 @@ class Frame:
     background: tuple[int, int, int]
     materials: MaterialTable
     spans: Spans
+    further: list[FurtherLight] = field(default_factory=list)
 
     def __repr__(self) -> str:
         pixels = int(np.maximum(self.spans["length"], 1).sum())
-        return f"Frame({self.width}x{self.height}, spans: {len(self.spans)}, pixels: {pixels})"
+        lights = f", lights: {self.lights}" if self.further else ""
+        return (
+            f"Frame({self.width}x{self.height}, spans: {len(self.spans)}, pixels: {pixels}{lights})"
+        )
+
+    @property
+    def lights(self) -> int:
+        """Number of lights."""
+        return 1 + len(self.further)
+
+    def light(self, number: int, config: Config) -> FurtherLight:
+        """The light `number`, from 0, the first one in the form of the others."""
+        if number:
+            return self.further[number - 1]
+        table, spans = self.materials, self.spans
+        highlight = table.highlight
+        if highlight is None:
+            highlight = np.full(table.diffuse.shape, config.coefficient.one)
+        return FurtherLight(
+            self.half_vector, spans["start"], spans["step"], table.diffuse, highlight
+        )
+
+    def seen_by(self, light: FurtherLight) -> Frame:
+        """The frame as `light` alone sees it: its half vector and its start and step; not its
+        colours."""
+        spans = self.spans.copy()
+        spans["start"], spans["step"] = light.start, light.step
+        return replace(self, half_vector=light.half_vector, spans=spans, further=[])
+
+    def take(self, rows: Ints | Flags) -> Frame:
+        """The frame with the spans number `rows` (int64[m] or bool[n]) only."""
+        further = [replace(r, start=r.start[rows], step=r.step[rows]) for r in self.further]
+        return replace(self, spans=self.spans[rows], further=further)
+
+
+def fitted(config: Config, frame: Frame, units: int = 1) -> Config:
+    """`config` with what `frame` needs beyond it: second differences where a span has a bend; the
+    lights that `frame` has. As it is for linear normals, one white light and Cp <= 1.
+
+    units: shading units side by side. Raises InputError if there are more units than lights, or if
+    `config` has a method or a feature that is for one light.
+    """
+    if config.normal_order == 1 and frame.spans["bend"].any():
+        config = replace(config, name=f"{config.name}_quadratic", normal_order=2)
+    table = frame.materials
+    colours = [table.highlight, *(light.highlight for light in frame.further)]
+    coloured = any(c is not None and (c != config.coefficient.one).any() for c in colours)
+    beyond = (table.ambient + table.diffuse > config.coefficient.one).any()
+    if config.technique != "phong":
+        if units > 1:
+            raise InputError(f"{config.technique} shading has no units: it shades vertices")
+        return config
+    if not (coloured or beyond or frame.further or units > 1):
+        return config
+    suffix = f"_lights_{frame.lights}" + (f"_units_{units}" if units > 1 else "")
+    try:
+        return replace(
+            config, name=config.name + suffix, lights=frame.lights, units=units,
+            highlight_colour=bool(coloured or (beyond and not frame.further)),
+        )  # fmt: skip
+    except ValueError as error:
+        raise InputError(f"{error}; lights of the frame: {frame.lights}") from None
+
+
+def with_lights(config: Config, frame: Frame) -> Config:
+    """`config` if it sums lights, else with the lights of `frame` (see `fitted`).
+
+    Raises InputError if `frame` has more lights than `config`, or `config` cannot sum lights.
+    """
+    if not config.sums_lights:
+        return fitted(config, frame)
+    if frame.lights > config.lights:
+        raise InputError(f"{frame.lights} lights in a build for {config.lights}")
+    return config
+
+
+@dataclass(repr=False)
+class ExactLight:
+    """A `FurtherLight` before any rounding, in float64.
+
+    turn: float64[3, 3], takes a vector in the first light's frame to this light's. eye: as in
+    `ExactFrame`, in this light's frame. diffuse, highlight: float64[M, 3].
+    """
+
+    turn: Reals
+    eye: Reals
+    diffuse: Reals
+    highlight: Reals
 
 
 @dataclass(repr=False)
@@ -118,30 +228,25 @@ class ExactFrame:
     """A `Frame` before any rounding, in float64; row k belongs to `Frame.spans[k]`.
 
     start, step, bend: float64[n, 3], of the normal (unit at the vertices) or of the intensities S.
-    eye: float64[3], the unit vector u to the eye in the light frame. cp: float64[M, 3]; d:
-    float64[M]; weight: float64[M, P]; exponent: float64[M]: of the materials, as in
-    `MaterialTable.set`.
+    eye: float64[3], the unit vector u to the eye in the light frame. ambient, diffuse, highlight:
+    float64[M, 3]; weight: float64[M, P]; exponent: float64[M]: of the materials, as in
+    `MaterialTable`. further: the lights beside the first.
     """
 
     start: Reals
     step: Reals
     bend: Reals
     eye: Reals
-    cp: Reals
-    d: Reals
+    ambient: Reals
+    diffuse: Reals
+    highlight: Reals
     weight: Reals
     exponent: Reals
+    further: list[ExactLight] = field(default_factory=list)
 
     def __repr__(self) -> str:
         eye = ", ".join(f"{component:.3f}" for component in self.eye)
         return f"ExactFrame(spans: {len(self.start)}, eye: ({eye}))"
-
-
-def fitted(config: Config, frame: Frame) -> Config:
-    """`config` with what `frame` needs beyond it: second differences, where a span has a bend."""
-    if config.normal_order == 2 or not frame.spans["bend"].any():
-        return config
-    return replace(config, name=f"{config.name}_quadratic", normal_order=2)
 
 
 def half_vector_codes(eye: ArrayLike, config: Config) -> tuple[int, int]:

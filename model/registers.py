@@ -8,6 +8,10 @@ An address is {kind, material, index}: 1 bit, `material_bits` and `weight_index_
 - Kind 1: `index` is one of `FIELDS` of a material. The word is a code, from bit 0 up. The fields
   half_x, half_z and control are registers; any material addresses them. Bit 0 of control is 1 for a
   two-sided frame.
+
+In a build for several lights the number of a light stands above: {light, kind, material, index}.
+The fields diffuse, highlight, half_x and half_z belong to a light; any light addresses the others.
+Bits 3 to 1 of control hold the number of the frame's lights minus 1.
 """
 
 from __future__ import annotations
@@ -17,14 +21,17 @@ import numpy as np
 from phong75.model.config import Config
 from phong75.model.frame import Frame
 
-#: Index of each field at addresses of kind 1. Ambient and diffuse take three each: red, green,
-#: blue.
-FIELDS = {"ambient": 0, "diffuse": 3, "exponent": 6, "half_x": 8, "half_z": 9, "control": 10}
+#: Index of each field at addresses of kind 1. Ambient, diffuse and highlight take three each: red,
+#: green, blue.
+FIELDS = {
+    "ambient": 0, "diffuse": 3, "exponent": 6, "half_x": 8, "half_z": 9, "control": 10,
+    "highlight": 11,
+}  # fmt: skip
 
 
 def address_bits(config: Config) -> int:
     """Width of the write port's address, in bits."""
-    return 1 + config.material_bits + config.weight_index_bits
+    return config.light_bits + 1 + config.material_bits + config.weight_index_bits
 
 
 def word_bits(config: Config) -> int:
@@ -38,10 +45,12 @@ def writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
 
     A value that the build leaves out, or holds as a constant, is written only if the frame needs
     another one; the RTL answers such a write with `unsupported`. Spans of intensities need no
-    writes.
+    writes. Raises ValueError if the frame has more lights than the build.
     """
     if config.technique != "phong":
         return []
+    if frame.lights > config.lights:
+        raise ValueError(f"{frame.lights} lights in a build for {config.lights}")
     kind = 1 << (config.material_bits + config.weight_index_bits)
     word_mask = (1 << word_bits(config)) - 1
     table = frame.materials
@@ -55,7 +64,8 @@ def writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
     differs = config.specular and (hx, hz) != tuple(config.constant_half_vector)
     write("half_x", hx, differs)
     write("half_z", hz, differs)
-    write("control", frame.two_sided, config.two_sided or frame.two_sided)
+    control = frame.two_sided | (frame.lights - 1) << 1
+    write("control", control, config.two_sided or frame.two_sided or config.light_bits > 0)
     for material in np.unique(frame.spans["material"]).tolist():
         base = material << config.weight_index_bits
         ambient, diffuse = table.ambient[material], table.diffuse[material]
@@ -80,4 +90,37 @@ def writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
             if config.weight_function or step or (k == 0 and (points[0],) != tuple(known)):
                 word = (step << config.coefficient.bits | points[k]) & word_mask
                 out.append((base | k, word))
+    return out + (_light_writes(frame, config) if config.sums_lights else [])
+
+
+def _light_writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
+    """The writes of the further lights, and of the colours of all lights' highlights."""
+    out = []
+    above = 1 + config.material_bits + config.weight_index_bits
+    half_mask = (1 << config.half_vector.bits) - 1
+
+    def write(light: int, name: str, word: int, material: int = 0, channel: int = 0) -> None:
+        field = material << config.weight_index_bits | (FIELDS[name] + channel)
+        out.append((light << above | 1 << (above - 1) | field, int(word)))
+
+    used = np.unique(frame.spans["material"]).tolist()
+    for number in range(frame.lights):
+        light = frame.light(number, config)
+        if number and config.specular:
+            for name, code in zip(("half_x", "half_z"), light.half_vector, strict=True):
+                write(number, name, code & half_mask)
+        for material in used:
+            for name, codes, there, neutral in (
+                ("diffuse", light.diffuse[material], config.diffuse, 0),
+                ("highlight", light.highlight[material], config.highlight_colour,
+                 config.coefficient.one),
+            ):  # fmt: skip
+                if (name == "diffuse" and not number) or (
+                    name == "highlight" and not config.specular
+                ):
+                    continue
+                for channel, code in enumerate(codes.tolist()):
+                    needed = there or code != neutral
+                    if needed and (channel < config.channels or code != codes[0]):
+                        write(number, name, code, material, channel)
     return out

@@ -25,6 +25,15 @@ power of two of bytes: 234 bits in 32 bytes with the default configuration.
 
 With `Config.normal_order` 2, bend_x, bend_y, bend_z (`Config.bend`) follow step_z: 366 bits in 64
 bytes with the other fields at their defaults.
+With several lights (`Config.sums_lights`) a span is one record a turn: `units` lights each, so
+ceil(lights / units) records. The fields of the further units of a record stand above those of the
+first, their names end in the unit's number: start_x_1 is x of the second light of the record. Each
+light's start and step are in the frame of that light; where the last record has a unit without a
+light, both are 0. The other fields are the same in all records of a span, but `last`, which only
+the last record of the frame has. Line 2 has one key more:
+
+    lights          a list with an object a light: {half_vector[2], diffuse[M][3], highlight[M][3]},
+                    where M counts the rows of `materials`, in their order
 
 For Gouraud shading, x, y and z of start and step are red, green and blue; for grey there is x only.
 For flat shading there is no step. With `Config.spans_carry_squares`, six words of `squared` stand
@@ -37,6 +46,7 @@ error shows the same error again.
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -44,9 +54,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from phong75.model import quadratic_spans
-from phong75.model.arrays import Flags, Spans
+from phong75.model.arrays import Flags, Ints, Spans
 from phong75.model.config import Config
-from phong75.model.frame import SPAN_DTYPE, Frame, InputError, MaterialTable
+from phong75.model.frame import SPAN_DTYPE, Frame, FurtherLight, InputError, MaterialTable
 
 MAGIC = "phong75-spans 1"
 
@@ -87,7 +97,12 @@ def span_fields(config: Config) -> list[SpanField]:
     """The fields of a record, from bit 0 up, without gaps."""
     carried = ("start",) if config.technique == "flat" else ("start", "step")
     axes = "xyz"[: config.values]
-    widths = [(f"{what}_{axis}", config.normal.bits) for what in carried for axis in axes]
+    widths = [
+        (f"{what}_{axis}" + (f"_{unit}" if unit else ""), config.normal.bits)
+        for unit in range(config.span_units)
+        for what in carried
+        for axis in axes
+    ]
     if config.normal_order == 2:
         widths += [(f"bend_{axis}", config.bend.bits) for axis in axes]
     if config.spans_carry_squares:
@@ -116,18 +131,27 @@ def record_bits(config: Config) -> int:
     return bits
 
 
+def turns(frame: Frame, config: Config) -> int:
+    """How many records a span of `frame` has: the turns of its lights."""
+    return -(-frame.lights // config.span_units) if config.sums_lights else 1
+
+
 def illegal_spans(frame: Frame, config: Config) -> Flags:
     """Which spans the RTL flags as illegal, bool[n]: a component of the normal leaves its format
-    between the first and the last pixel. With `normal_order` 2 also those in which the change from
-    one of these pixels to the next leaves the format (see `bent_beyond`).
+    between the first and the last pixel, for any light. With `normal_order` 2 also those in which
+    the change from one of these pixels to the next leaves the format (see `bent_beyond`).
     """
     if config.normal_order == 2:
         return bent_beyond(frame.spans, config)
     # The components are linear, so both ends decide.
     steps = np.maximum(frame.spans["length"].astype(np.int64), 1) - 1
-    end = frame.spans["start"] + steps[:, None] * frame.spans["step"]
-    legal = config.normal.contains(frame.spans["start"]) & config.normal.contains(end)
-    return np.any(~legal, axis=1)
+    illegal = np.zeros(len(frame.spans), bool)
+    for number in range(frame.lights):
+        light = frame.light(number, config)
+        end = light.start + steps[:, None] * light.step
+        legal = config.normal.contains(light.start) & config.normal.contains(end)
+        illegal |= np.any(~legal, axis=1)
+    return illegal
 
 
 def bent_beyond(spans: Spans, config: Config) -> Flags:
@@ -163,9 +187,9 @@ def write_spans(path: str | Path, frame: Frame, config: Config) -> None:
     them to the RTL. Raises ValueError if a value does not fit its field and OSError if the file
     cannot be written.
     """
-    body = pack(frame.spans, config, frame.half_vector)
+    body = pack_frame(frame, config)
     size = record_bits(config) // 8
-    header = {
+    header: dict[str, Any] = {
         "width": int(frame.width),
         "height": int(frame.height),
         "half_vector": [int(c) for c in frame.half_vector],
@@ -176,11 +200,41 @@ def write_spans(path: str | Path, frame: Frame, config: Config) -> None:
         "formats": _formats(config),
         "record": _record(config),
     }
+    if config.sums_lights:
+        header["lights"] = _light_rows(frame, config, header["materials"])
     lines = _lines(header, 0)
     # The line holds the offset, which depends on the line's length: leave room for its digits.
     offset = -(-(len(lines) + 20) // size) * size
     lines = _lines(header, offset)
     Path(path).write_bytes(lines[:-1].ljust(offset - 1) + b"\n" + body)
+
+
+def pack_frame(frame: Frame, config: Config) -> bytes:
+    """The records of all spans of `frame`, one after the other: as many a span as the frame's
+    lights take turns.
+
+    Raises ValueError if a value does not fit its field or the frame has more lights than the build.
+    """
+    if frame.lights > config.lights and config.technique == "phong":
+        raise ValueError(f"{frame.lights} lights in a build for {config.lights}")
+    if not config.sums_lights:
+        return pack(frame.spans, config, frame.half_vector)
+    units, count = config.units, turns(frame, config)
+    nothing = np.zeros((len(frame.spans), 3), np.int64)
+    records = np.zeros((len(frame.spans), count, record_bits(config) // 8), np.uint8)
+    for turn in range(count):
+        lights = [
+            frame.light(number, config) if number < frame.lights else None
+            for number in range(turn * units, (turn + 1) * units)
+        ]
+        values = [(v.start, v.step) if v else (nothing, nothing) for v in lights]
+        spans = frame.spans.copy()
+        spans["start"], spans["step"] = values[0]
+        if turn < count - 1:
+            spans["last"] = False
+        body = _pack(spans, config, values)
+        records[:, turn] = np.frombuffer(body, np.uint8).reshape(len(spans), -1)
+    return records.tobytes()
 
 
 def pack(spans: Spans, config: Config, half_vector: tuple[int, ...] = (0, 0)) -> bytes:
@@ -189,15 +243,26 @@ def pack(spans: Spans, config: Config, half_vector: tuple[int, ...] = (0, 0)) ->
     half_vector: (hx, hz) of the frame, needed if spans carry squares. Raises ValueError if a value
     does not fit its field.
     """
-    words = np.zeros((len(spans), record_bits(config) // _WORD), np.uint64)
     if not np.array_equal(spans, _implied(spans, config)):
         raise ValueError("a span has a step, bend or colours that a record has no place for")
     squares = {}
     if config.spans_carry_squares:
         squares = quadratic_spans.coefficients(spans, half_vector, config)
+    return _pack(spans, config, [(spans["start"], spans["step"])], squares)
+
+
+def _pack(
+    spans: Spans,
+    config: Config,
+    values: list[tuple[Ints, Ints]],
+    squares: dict[str, Ints] | None = None,
+) -> bytes:
+    """The records of `spans`. values: start and step of each unit, int64[n, 3]. squares: {field:
+    codes} of `quadratic_spans`."""
+    words = np.zeros((len(spans), record_bits(config) // _WORD), np.uint64)
     for field in span_fields(config):
-        square = squares.get(field.name)
-        value, signed = _column(spans, field.name) if square is None else (square, True)
+        square = (squares or {}).get(field.name)
+        value, signed = _column(spans, field.name, values) if square is None else (square, True)
         low = -(1 << (field.bits - 1)) if signed else 0
         if len(value) and not (low <= value.min() and value.max() < low + (1 << field.bits)):
             raise ValueError(f"a span's {field.name} does not fit {field.bits} bits")
@@ -210,11 +275,16 @@ def pack(spans: Spans, config: Config, half_vector: tuple[int, ...] = (0, 0)) ->
 
 
 def unpack(body: bytes, config: Config) -> Spans:
-    """The spans (SPAN_DTYPE[n]) of the records in `body`.
+    """The spans (SPAN_DTYPE[n]) of the records in `body`, with the values of the first unit.
 
     Raises InputError if the padding of a record is not zero, or if records carry squares, from
     which the normal's x and y cannot be recovered.
     """
+    return _unpack(body, config)[0]
+
+
+def _unpack(body: bytes, config: Config) -> tuple[Spans, list[tuple[Ints, Ints]]]:
+    """The spans of the records in `body`, and start and step of each unit. Raises InputError."""
     if config.spans_carry_squares:
         raise InputError("spans of squares cannot be read back")
     words = np.frombuffer(body, ">u8").reshape(-1, record_bits(config) // _WORD)[:, ::-1]
@@ -222,13 +292,16 @@ def unpack(body: bytes, config: Config) -> Spans:
     fields = span_fields(config)
     _reject("padding is not zero", _bits(words, fields[-1].lsb + fields[-1].bits) != 0)
     spans = np.zeros(len(words), SPAN_DTYPE)
+    values = [(spans["start"], spans["step"])]
+    for _ in range(1, config.span_units):
+        values.append((np.zeros((len(words), 3), np.int64), np.zeros((len(words), 3), np.int64)))
     for field in fields:
         value = (_bits(words, field.lsb) & np.uint64((1 << field.bits) - 1)).astype(np.int64)
-        column, signed = _column(spans, field.name)
+        column, signed = _column(spans, field.name, values)
         if signed:
             value -= (value >> (field.bits - 1)) << field.bits
         column[:] = value
-    return _implied(spans, config)
+    return _implied(spans, config), values
 
 
 def _implied(spans: Spans, config: Config) -> Spans:
@@ -258,10 +331,16 @@ def _bits(words: Records, lsb: int) -> Records:
     return value
 
 
-def _column(spans: Spans, name: str) -> tuple[Any, bool]:
-    """The column of `spans` that the field `name` holds (a view), and whether it is signed."""
-    what, _, axis = name.partition("_")
-    return (spans[what][:, "xyz".index(axis)], True) if axis else (spans[what], False)
+def _column(spans: Spans, name: str, values: list[tuple[Ints, Ints]]) -> tuple[Any, bool]:
+    """The column that the field `name` holds (a view), and whether it is signed.
+
+    values: start and step of each unit, int64[n, 3].
+    """
+    what, _, rest = name.partition("_")
+    axis, _, unit = rest.partition("_")
+    if not axis:
+        return spans[what], False
+    return values[int(unit or 0)][what == "step"][:, "xyz".index(axis)], True
 
 
 def _lines(header: dict[str, Any], offset: int) -> bytes:
@@ -294,6 +373,22 @@ def _material_rows(frame: Frame, config: Config) -> list[dict[str, Any]]:
         if index in named or any((row[n] != getattr(empty, n)[index]).any() for n in columns):
             rows.append({"index": index} | {name: code.tolist() for name, code in row.items()})
     return rows
+
+
+def _light_rows(frame: Frame, config: Config, rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The `lights` of line 2. rows: its `materials`."""
+    used = [row["index"] for row in rows]
+    lights = []
+    for number in range(frame.lights):
+        light = frame.light(number, config)
+        lights.append(
+            {
+                "half_vector": [int(c) for c in light.half_vector],
+                "diffuse": light.diffuse[used].tolist(),
+                "highlight": light.highlight[used].tolist(),
+            }
+        )
+    return lights
 
 
 # -- reading ---------------------------------------------------------------------------------------
@@ -334,7 +429,8 @@ def _split(data: bytes) -> tuple[dict[str, Any], bytes]:
         reason = getattr(error, "msg", None) or type(error).__name__
         raise InputError(f"line 2 is not JSON: {reason}") from None
     keys = "width height half_vector two_sided background materials spans formats record"
-    _keys("line 2", header, [*keys.split(), "body_offset"])
+    lights = ["lights"] if isinstance(header, dict) and "lights" in header else []
+    _keys("line 2", header, [*keys.split(), *lights, "body_offset"])
     offset = _integer("body_offset", header["body_offset"], 0, len(data))
     if offset != len(magic) + len(line) + 2:
         raise InputError(
@@ -356,23 +452,25 @@ def _frame(header: dict[str, Any], body: bytes, config: Config) -> Frame:
         raise InputError("record: the layout is not that of the pipeline")
     width = _integer("width", header["width"], 1, config.max_size)
     height = _integer("height", header["height"], 1, config.max_size)
-    fmt = config.half_vector
-    hx, hz = _integers("half_vector", header["half_vector"], 2, fmt.min, fmt.max)
-    if not (hx or hz):
-        raise InputError("half_vector has length zero")
+    hx, hz = _half_vector("half_vector", header["half_vector"], config)
     if not isinstance(header["two_sided"], bool):
         raise InputError("two_sided is neither true nor false")
     white = (1 << config.colour_bits) - 1
     red, green, blue = _integers("background", header["background"], 3, 0, white)
     materials, named = _materials(header["materials"], config)
+    further = _lights(header, materials, config)
 
-    size = record_bits(config) // 8
+    each = -(-(1 + len(further)) // config.span_units)  # records a span
+    size = each * record_bits(config) // 8
     count = _integer("spans", header["spans"], 0, None)
     if len(body) != count * size:
         raise InputError(
             f"{count} spans of {size} bytes are announced, but {len(body)} bytes follow line 2"
         )
-    spans = unpack(body, config)
+    records, values = _unpack(body, config)
+    spans = records[each - 1 :: each].copy()  # the last record has `last`
+    if config.sums_lights:
+        _read_turns(spans, records, values, further, each)
     _reject("length is zero", spans["length"] == 0)
     _reject(
         f"reaches beyond the width of {width}",
@@ -382,7 +480,72 @@ def _frame(header: dict[str, Any], body: bytes, config: Config) -> Frame:
     _reject("names a material that line 2 does not give", ~named[spans["material"]])
     _reject("is marked as the last, but more follow", spans["last"][:-1])
     _reject("is the last, but not marked so", ~spans["last"][-1:], len(spans) - 1)
-    return Frame(width, height, (hx, hz), header["two_sided"], (red, green, blue), materials, spans)
+    return Frame(
+        width, height, (hx, hz), header["two_sided"], (red, green, blue), materials, spans, further
+    )
+
+
+def _lights(header: dict[str, Any], table: MaterialTable, config: Config) -> list[FurtherLight]:
+    """The further lights of line 2, without start and step; the first light's highlights go to
+    `table`."""
+    if ("lights" in header) != config.sums_lights:
+        need = "needs" if "lights" in header else "has no"
+        raise InputError(f"line 2 {need} lights, which is not what the pipeline is built for")
+    if not config.sums_lights:
+        return []
+    lights = header["lights"]
+    if not isinstance(lights, list) or not 1 <= len(lights) <= config.lights:
+        raise InputError(f"lights is not a list of 1 to {config.lights} lights")
+    used = [row["index"] for row in header["materials"]]
+    most = config.coefficient.max
+    found = []
+    for number, light in enumerate(lights):
+        name = f"lights[{number}]"
+        _keys(name, light, ["half_vector", "diffuse", "highlight"])
+        hx, hz = _half_vector(f"{name}.half_vector", light["half_vector"], config)
+        columns = {}
+        for key in ("diffuse", "highlight"):
+            rows = light[key]
+            if not isinstance(rows, list) or len(rows) != len(used):
+                raise InputError(f"{name}.{key} is not a list of {len(used)} rows")
+            column = np.zeros_like(table.diffuse)
+            for index, row in zip(used, rows, strict=True):
+                column[index] = _integers(f"{name}.{key}", row, 3, 0, most)
+            columns[key] = column
+        nothing = np.zeros((0, 3), np.int64)
+        found.append(FurtherLight((hx, hz), nothing, nothing, **columns))
+    if (found[0].diffuse != table.diffuse).any() or list(found[0].half_vector) != header[
+        "half_vector"
+    ]:
+        raise InputError("lights[0] differs from half_vector or the materials' diffuse")
+    table.highlight = found[0].highlight
+    return found[1:]
+
+
+def _read_turns(
+    spans: Spans,
+    records: Spans,
+    values: list[tuple[Ints, Ints]],
+    further: list[FurtherLight],
+    each: int,
+) -> None:
+    """Give `spans` (SPAN_DTYPE[n]) and the `further` lights their start and step, from the
+    `records`, `each` a span. values: start and step of each unit in all records."""
+    for name in ("x", "y", "length", "material"):
+        same = records[name].reshape(-1, each) == spans[name][:, None]
+        _reject(f"its records differ in {name}", np.any(~same, axis=1))
+    early = records["last"].reshape(-1, each)[:, :-1]
+    _reject("a record before its last one is marked as the last", np.any(early, axis=1))
+    units = len(values)
+    for number in range(each * units):
+        turn, unit = divmod(number, units)
+        start, step = (v[turn::each].copy() for v in values[unit])
+        if number == 0:
+            spans["start"], spans["step"] = start, step
+        elif number <= len(further):
+            further[number - 1].start, further[number - 1].step = start, step
+        else:
+            _reject("a unit without a light has a normal", np.any((start | step) != 0, axis=1))
 
 
 def _materials(rows: Any, config: Config) -> tuple[MaterialTable, Flags]:
@@ -391,6 +554,7 @@ def _materials(rows: Any, config: Config) -> tuple[MaterialTable, Flags]:
         raise InputError("materials is not a list")
     table, given = MaterialTable.empty(config), np.zeros(config.materials, bool)
     one, n_one = config.coefficient.one, config.exponent.one
+    most = config.coefficient.max if config.sums_lights else one
     for place, row in enumerate(rows):
         _keys(f"materials[{place}]", row, ["index", "ambient", "diffuse", "weight", "exponent"])
         index = _integer(f"materials[{place}].index", row["index"], 0, config.materials - 1)
@@ -398,9 +562,9 @@ def _materials(rows: Any, config: Config) -> tuple[MaterialTable, Flags]:
         if given[index]:
             raise InputError(f"{name} is given twice")
         given[index] = True
-        table.ambient[index] = _integers(f"{name}: ambient", row["ambient"], 3, 0, one)
-        table.diffuse[index] = _integers(f"{name}: diffuse", row["diffuse"], 3, 0, one)
-        if (table.ambient[index] + table.diffuse[index] > one).any():
+        table.ambient[index] = _integers(f"{name}: ambient", row["ambient"], 3, 0, most)
+        table.diffuse[index] = _integers(f"{name}: diffuse", row["diffuse"], 3, 0, most)
+        if not config.sums_lights and (table.ambient[index] + table.diffuse[index] > one).any():
             raise InputError(f"{name}: ambient + diffuse, which is Cp, is above {one}")
         table.weight[index] = _integers(
             f"{name}: weight", row["weight"], config.weight_points, 0, one
@@ -430,6 +594,19 @@ def _integer(name: str, value: Any, low: int, high: int | None) -> int:
         shown = json.dumps(value)
         raise InputError(f"{name} is {shown[:40]}, not a whole number {limits}")
     return value
+
+
+def _half_vector(name: str, value: Any, config: Config) -> tuple[int, int]:
+    """`value` as (hx, hz) in `Config.half_vector`, if its length is 1.
+
+    Rounding moves one component by at most 1/2 LSB, and the clamp below 1 the other one by at most
+    1 LSB, so the length by at most sqrt(5)/2 LSB. Raises InputError.
+    """
+    fmt = config.half_vector
+    hx, hz = _integers(name, value, 2, fmt.min, fmt.max)
+    if not abs(math.hypot(hx, hz) - fmt.one) <= math.sqrt(5) / 2:
+        raise InputError(f"{name} has length {math.hypot(hx, hz) / fmt.one:.6f}, not 1")
+    return hx, hz
 
 
 def _integers(name: str, value: Any, count: int, low: int, high: int) -> list[int]:

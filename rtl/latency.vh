@@ -219,13 +219,67 @@
   ( `PHONG_SPECULAR_LATENCY \
   + `PHONG_COLOUR_CHANNEL_LATENCY )  /* W * power runs beside the products in it */
 
+// Several lights: from an interpolated normal to its mantissas.
+`define PHONG_LIGHT_ALIGN_LATENCY \
+  ( 1                                /* leading_zeros: significant bits of three components */ \
+  + `PHONG_LEADING_ZEROS_LATENCY \
+  + 1                                /* hold the first light's shift */ \
+  + 1                                /* shift: that of the first light, or less */ \
+  + `PHONG_LEFT_SHIFTER_LATENCY      /* align */ \
+  + `PHONG_ROUND_SATURATE_LATENCY )
+
+`define PHONG_HELD_ROOT_LATENCY \
+  ( `PHONG_MULTIPLIER_LATENCY        /* squares */ \
+  + 2                                /* sum_of_squares */ \
+  + 1                                /* root_operand */ \
+  + `PHONG_INVERSE_SQRT_LATENCY \
+  + 1 )                              /* hold */
+
+`define PHONG_LIGHT_SCALE_LATENCY \
+  ( `PHONG_MULTIPLIER_LATENCY        /* scale */ \
+  + 1                                /* scale: double */ \
+  + `PHONG_ROUND_SATURATE_LATENCY )
+
+// From the interpolators to the unit normals.
+`define PHONG_LIGHT_NORMAL_LATENCY \
+  (`PHONG_LIGHT_ALIGN_LATENCY + `PHONG_HELD_ROOT_LATENCY + `PHONG_LIGHT_SCALE_LATENCY)
+
+// From the unit normal to W(i) cos(s)^n.
+`define PHONG_LIGHT_HIGHLIGHT_LATENCY \
+  ( `PHONG_HIGHLIGHT_LATENCY + `PHONG_POWER_LATENCY \
+  + `PHONG_MULTIPLIER_LATENCY        /* W times the power */ \
+  + (`PHONG_HIGHLIGHT_COLOUR ? `PHONG_ROUND_SATURATE_LATENCY : 0) )
+
+`define PHONG_LIGHT_TABLE_LATENCY \
+  ( `PHONG_TURNS > 1 ? `PHONG_RAM_LATENCY : `PHONG_SMALL_RAM_LATENCY )
+
+// From the unit normal to the products with the colours. A white highlight has none and arrives
+// with the diffuse product.
+`define PHONG_LIGHT_COLOUR_LATENCY \
+  ( !`PHONG_SPECULAR ? `PHONG_LIGHT_TABLE_LATENCY : \
+    `PHONG_LIGHT_HIGHLIGHT_LATENCY - (`PHONG_HIGHLIGHT_COLOUR ? 0 : `PHONG_MULTIPLIER_LATENCY) )
+
+`define PHONG_LIGHT_TERMS_LATENCY \
+  ( `PHONG_MULTIPLIER_LATENCY        /* products with the colours */ \
+  + 1 )                              /* diffuse + specular */
+
+`define PHONG_LIGHT_SUM_LATENCY \
+  ( (`PHONG_UNITS > 4 ? 3 : `PHONG_UNITS > 2 ? 2 : `PHONG_UNITS - 1) \
+                                     /* tree */ \
+  + 2                                /* accumulate: look-up of the ambient part; add */ \
+  + 1                                /* clamp, cut */ \
+  + 2 )                              /* code: times 255, round */
+
 `define PHONG_INTENSITY_CODE_LATENCY \
   ( 1                                /* clamp, cut */ \
   + 2 )                              /* code: times 255, round */
 
-// From a pixel of span_walker to its colour.
+// From a pixel of span_walker (several lights: its last turn) to its colour.
 `define PHONG_PIXEL_LATENCY \
-  ( `PHONG_TECHNIQUE == `PHONG_TECHNIQUE_PHONG \
+  ( `PHONG_SUMS_LIGHTS \
+  ? `PHONG_LIGHT_NORMAL_LATENCY + `PHONG_LIGHT_COLOUR_LATENCY + `PHONG_LIGHT_TERMS_LATENCY \
+    + `PHONG_LIGHT_SUM_LATENCY \
+  : `PHONG_TECHNIQUE == `PHONG_TECHNIQUE_PHONG \
   ? `PHONG_NORMAL_LATENCY + `PHONG_SHADING_UNIT_LATENCY \
   : `PHONG_INTENSITY_CODE_LATENCY )  /* Gouraud, flat */
 

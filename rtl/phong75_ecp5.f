@@ -27,6 +27,19 @@ core/specular_weight.v
 core/colour_channel.v
 core/pixel_fifo.v
 
+// several lights
+lights/light_turns.v
+lights/lights_unit.v
+lights/light_map.v
+lights/context_interpolator.v
+lights/light_align.v
+lights/turn_hold.v
+lights/held_root.v
+lights/light_scale.v
+lights/light_highlight.v
+lights/light_terms.v
+lights/light_sum.v
+
 // quadratic normals; and what Phong's paper compares with: Gouraud's and flat shading
 techniques/second_difference_interpolator.v
 techniques/gouraud_unit.v
@@ -60,4 +73,5 @@ primitives/slope_multiplier.v
 ecp5/rom.v
 ecp5/ram.v
 primitives/small_ram.v
+primitives/lut_ram.v
 ecp5/block_ram.v

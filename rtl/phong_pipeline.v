@@ -2,8 +2,8 @@
 // phong_pipeline: shades spans: spans in, coloured pixels out (Bui Tuong Phong, "Illumination for
 // Computer Generated Pictures", 1975).
 // span_walker turns spans into pixels. One unit gives each pixel its colour, by the technique of
-// the configuration: phong_unit (or quadratic_unit), or one of the techniques that Phong compares
-// with, gouraud_unit (interpolated intensities) and flat_unit (one intensity per face). pixel_fifo
+// the configuration: phong_unit (or quadratic_unit; lights_unit for several lights, with light_turns
+// before the walker if they take turns), or one of the techniques that Phong compares with, gouraud_unit (interpolated intensities) and flat_unit (one intensity per face). pixel_fifo
 // holds finished pixels under back-pressure. The module holds the wiring, in data order.
 // Latency: PHONG_PIXEL_LATENCY + 3 cycles from an accepted span to its first pixel (see latency.vh;
 // 77 by default).
@@ -20,12 +20,13 @@ module phong_pipeline (
 
     // write port of registers and material table; write between frames only. gouraud_unit and
     // flat_unit have neither registers nor table.
-    input wire                                                   write_enable,   // 1: write
-    input wire [`PHONG_MATERIAL_BITS+`PHONG_WEIGHT_INDEX_BITS:0] write_address,  // see register_map
-    input wire [2*`PHONG_COEFFICIENT_BITS:0]                     write_word,     // see register_map
+    input wire                               write_enable,   // 1: write
+    input wire [`PHONG_ADDRESS_BITS-1:0]     write_address,  // see register_map, light_map
+    input wire [2*`PHONG_COEFFICIENT_BITS:0] write_word,     // see register_map
 
     // spans: {material, length, y, x, step z, y, x, start z, y, x}; start and step are s1.30;
-    // length, y and x are in pixels. Gouraud shading: blue, green, red in place of z, y, x; flat
+    // length, y and x are in pixels. Several lights: see light_turns for the records of a span and
+    // lights_unit for their values. Gouraud shading: blue, green, red in place of z, y, x; flat
     // shading: the same without step. For quadratic normals and quadratic_spans see `values` of
     // phong_unit and of quadratic_unit.
     input  wire                        s_axis_tvalid,
@@ -53,6 +54,9 @@ module phong_pipeline (
   localparam COLOUR_BITS        = `PHONG_COLOUR_BITS;
   localparam SPAN_BITS          = `PHONG_SPAN_BITS;
   localparam IDLE_MATERIAL_BITS = `PHONG_IDLE_MATERIAL_BITS;
+  localparam SUMS_LIGHTS        = `PHONG_SUMS_LIGHTS;  // 1: several lights, or coloured highlights
+  localparam TURNS              = `PHONG_TURNS;        // of the lights of a pixel
+  localparam TURN_BITS          = `PHONG_TURN_BITS;
 
   // ---- spans to pixels ----
   localparam VALUES_BITS = SPAN_BITS - MATERIAL_BITS - 3 * COORDINATE_BITS - 1;
@@ -65,6 +69,7 @@ module phong_pipeline (
   assign {span_material, span_length, span_y, span_x, span_values} = s_axis_tdata;
 
   wire load, advance, overflow, credit;
+  wire walker_load, walker_advance, walker_overflow, walker_credit, walker_ready, walker_last;
   wire pixel_valid, pixel_last;
   wire [COORDINATE_BITS-1:0] pixel_x, pixel_y;
   wire [MATERIAL_BITS-1:0] pixel_material;
@@ -73,23 +78,66 @@ module phong_pipeline (
       .clk(clk),
       .reset(reset),
       .span_valid(s_axis_tvalid),
-      .span_ready(s_axis_tready),
+      .span_ready(walker_ready),
       .span_x(span_x),
       .span_y(span_y),
       .span_length(span_length),
       .span_material(span_material & ({MATERIAL_BITS{1'b1}} >> IDLE_MATERIAL_BITS)),
       .span_last(s_axis_tlast),
-      .load(load),
-      .advance(advance),
-      .overflow(overflow),
-      .credit(credit),
+      .load(walker_load),
+      .advance(walker_advance),
+      .overflow(walker_overflow),
+      .credit(walker_credit),
       .pixel_valid(pixel_valid),
       .pixel_x(pixel_x),
       .pixel_y(pixel_y),
       .pixel_material(pixel_material),
-      .pixel_last(pixel_last),
+      .pixel_last(walker_last),
       .illegal_span(illegal_span)
   );
+
+  // ---- turns of the lights of a pixel ----
+  wire [TURN_BITS-1:0] last_turn, turn, next_turn;
+  wire turn_valid;
+
+  generate
+    if (!SUMS_LIGHTS) begin : gen_no_turns
+      assign last_turn = {TURN_BITS{1'b0}};
+    end
+
+    if (TURNS > 1) begin : gen_turns
+      light_turns u_light_turns (
+          .clk(clk),
+          .reset(reset),
+          .last_turn(last_turn),
+          .record_valid(s_axis_tvalid),
+          .record_ready(s_axis_tready),
+          .record_last(s_axis_tlast),
+          .walker_credit(walker_credit),
+          .walker_ready(walker_ready),
+          .walker_load(walker_load),
+          .walker_overflow(walker_overflow),
+          .credit(credit),
+          .advance(advance),
+          .load(load),
+          .overflow(overflow),
+          .turn(turn),
+          .next_turn(next_turn),
+          .turn_valid(turn_valid),
+          .pixel_last(pixel_last)
+      );
+
+      wire unused = &{1'b0, walker_advance, walker_last};
+    end else begin : gen_one_turn
+      assign {load, advance, pixel_last} = {walker_load, walker_advance, walker_last};
+      assign {walker_overflow, walker_credit} = {overflow, credit};
+      assign s_axis_tready = walker_ready;
+      assign {turn, next_turn} = {2 * TURN_BITS{1'b0}};
+      assign turn_valid = pixel_valid;
+
+      wire unused = &{1'b0, last_turn, turn, next_turn, turn_valid};
+    end
+  endgenerate
 
   // ---- pixels to colours ----
   wire [COLOUR_BITS-1:0] red, green, blue;
@@ -106,6 +154,35 @@ module phong_pipeline (
           .load(load),
           .advance(advance),
           .pixel_valid(pixel_valid),
+          .pixel_material(pixel_material),
+          .red(red),
+          .green(green),
+          .blue(blue),
+          .overflow(overflow),
+          .zero_normal(zero_normal),
+          .unsupported(unsupported)
+      );
+    end else if (SUMS_LIGHTS) begin : gen_lights
+      lights_unit u_lights_unit (
+          .clk(clk),
+          .reset(reset),
+          .write_enable(write_enable),
+          .write_address(write_address),
+          .write_word(write_word),
+          .last_turn(last_turn),
+          .values(span_values),
+          .taken(s_axis_tvalid & walker_ready),
+          .length(span_length),
+          .material(span_material),
+          .load(load),
+          .advance(advance),
+          .turn(turn),
+          .next_turn(next_turn),
+          .turn_valid(turn_valid),
+          .pixel_valid(pixel_valid),
+          .pixel_ends(walker_load),
+          .pixel_x(pixel_x),
+          .pixel_y(pixel_y),
           .pixel_material(pixel_material),
           .red(red),
           .green(green),

@@ -33,6 +33,11 @@ def _groups() -> dict[str, dict[str, Config]]:
                 DEFAULT, name="quadratic_normals", normal_order=2
             ),
         },
+        "for pictures of 10 and 12 bits a colour": {
+            "colour_10": dataclasses.replace(DEFAULT, name="colour_10", colour_bits=10),
+            "colour_10_wide": methods.of_width(20, "colour_10_wide", colour_bits=10),
+            "colour_12": methods.of_width(22, "colour_12", colour_bits=12),
+        },
         "points of `phong75 sweep`": {n: c for n, c in sweep.items() if n != DEFAULT.name},
     }
 

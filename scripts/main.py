@@ -157,6 +157,22 @@ def scenes(record: options.Record = False) -> int:
 
 
 @app.command()
+def convert(
+    scene: Annotated[
+        Path, typer.Argument(metavar="SCENE", help="A scene file of lecture notes (.scn).")
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="FILE", help="The TOML file; default: beside SCENE."),
+    ] = None,
+) -> int:
+    """Write a scene file of lecture notes (.scn, .des) as a TOML scene file."""
+    from phong75.scripts import convert as engine
+
+    return engine.main(scene, out)
+
+
+@app.command()
 def report() -> int:
     """Write one page of all results, build/report/index.html.
 

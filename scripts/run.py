@@ -115,6 +115,8 @@ def _front_end(request: RunRequest, folder: Path, steps: Steps) -> Stimulus:
             frame, exact, degenerate = spans.read_spans(request.spans, config), None, 0
         else:
             scene = load_scene(request.scene, request.size, config)
+            for remark in scene.remarks:
+                console.note(remark)
             front = front_end(scene, config, step.done)
             frame, exact, degenerate = front.frame, front.exact, front.degenerate_triangles
         config = fitted(config, frame)
@@ -174,7 +176,7 @@ def _report(
     codes, ports = _common(simulation, ideal.ports)
     scene_error = None
     if ideal.scene is not None:
-        scene_error = metrics.error_metrics(*_common(simulation, ideal.scene))
+        scene_error = metrics.error_metrics(*_common(simulation, ideal.scene), request.config.white)
     return run_report.make_report(
         scene=Path(request.spans or request.scene).stem,
         frame=stimulus.frame,
@@ -184,7 +186,7 @@ def _report(
         simulation=simulation,
         comparison=comparison,
         zero_normals=twin.zero_normals(stimulus.frame, stimulus.full),
-        error=metrics.error_metrics(codes, ports),
+        error=metrics.error_metrics(codes, ports, request.config.white),
         bound_lsb=None if ideal.bound is None else float(ideal.bound),
         pruned_differ=pruned_differ,
         input_error=scene_error,
@@ -203,18 +205,19 @@ def _common(simulation: SimResult, ideal: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def _pictures(
-    folder: Path, name: str, frame: Frame, expected: twin.Pixels, simulation: SimResult,
+    folder: Path, name: str, stimulus: Stimulus, expected: twin.Pixels, simulation: SimResult,
     ideal: Ideal, steps: Steps,
 ) -> None:  # fmt: skip
     """Write the picture of the RTL, that of the reference, and the map of the error, which shows
     `name`."""
+    frame, config = stimulus.frame, stimulus.full
     with steps.step("pictures"):
         x, y = simulation.pixels.x, simulation.pixels.y
-        frame_picture = pictures.canvas(frame, x, y, simulation.pixels.rgb)
-        pictures.write_picture(folder / "frame.png", frame_picture)
+        frame_picture = pictures.canvas(frame, x, y, simulation.pixels.rgb, config)
+        pictures.write_picture(folder / "frame.png", frame_picture, config)
         rounded = metrics.rounded(ideal.ports)
-        reference_picture = pictures.canvas(frame, expected.x, expected.y, rounded)
-        pictures.write_picture(folder / "reference.png", reference_picture)
+        reference_picture = pictures.canvas(frame, expected.x, expected.y, rounded, config)
+        pictures.write_picture(folder / "reference.png", reference_picture, config)
         codes, ports = _common(simulation, ideal.ports)
         error = np.abs(codes - ports)
         both = len(error)
@@ -244,13 +247,12 @@ def run(request: RunRequest, simulate: Simulate, steps: Steps) -> dict:
         comparison = metrics.compare(expected, simulation.pixels)
         report = _report(request, stimulus, comparison, pruned_differ, simulation, ideal, steps)
         name = f"{report['scene']}, {report['technique']}"
-        _pictures(folder, name, stimulus.frame, expected, simulation, ideal, steps)
+        _pictures(folder, name, stimulus, expected, simulation, ideal, steps)
         text = json.dumps(report, indent=2, allow_nan=False) + "\n"
         (folder / "report.json").write_text(text, encoding="utf-8")
         if stimulus.full != request.config:
             console.note(
-                f"the scene's normals are quadratic: {stimulus.full.name} builds second "
-                f"differences, which {request.config.name} is without"
+                f"the scene needs more than {request.config.name} has: {stimulus.full.name} is built"
             )
         _explain(stimulus, comparison)
     return report

@@ -47,9 +47,11 @@ def table(report: dict) -> Table:
     if bound is None:
         rows.add_row("largest error", f"{error['max_lsb']:.4f} LSB", "no bound derived; perfect: ½")
     else:
+        wide = error["max_lsb"] <= bound and bound > 1
         rows.add_row(
             "largest error",
-            f"{error['max_lsb']:.4f} LSB {verdict(error['max_lsb'] <= bound)}",
+            f"{error['max_lsb']:.4f} LSB "
+            + ("[yellow]the bound exceeds 1[/]" if wide else verdict(error["max_lsb"] <= bound)),
             f"derived bound {bound:.4f}; perfect: ½",
         )
     rows.add_row("error, RMS", f"{error['rms_lsb']:.4f} LSB", f"99.9 %: {error['p999_lsb']:.4f}")

@@ -31,6 +31,7 @@ from phong75.model.studies.methods import CONFIGS
 from phong75.model.studies.random_frames import random_frame
 from phong75.model.twin.core.register_map import unsupported_write, vanishing_exponent
 from phong75.model.twin.pruning.span_guard import span_guard
+from phong75.scripts.configurations import CONFIGURATIONS
 from phong75.sim.build import Bench
 from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 from phong75.sim.latency import latencies
@@ -522,6 +523,14 @@ def _method(name: str) -> ConfigurationTest:
     return ConfigurationTest(config, *jobs)
 
 
+def _wide() -> ConfigurationTest:
+    """Words of 22 bits, whose tables are wider than Verilator's longest literal, and 12-bit
+    colours."""
+    config = CONFIGURATIONS["colour_12"]
+    frames = [front_end(load_scene(*scene), config).frame for scene in SCENES]
+    return ConfigurationTest(config, *map(SimJob, frames))
+
+
 #: {name: function that makes the configuration test}.
 CONFIGURATION_TESTS: dict[str, Callable[[], ConfigurationTest]] = {
     "default": _default,
@@ -530,6 +539,7 @@ CONFIGURATION_TESTS: dict[str, Callable[[], ConfigurationTest]] = {
     "quadratic": _quadratic,
     "quadratic still": _quadratic_still,
     "narrow": lambda: _of(*narrow()),
+    "colour_12": _wide,
     "single": lambda: _single(),
     "single grey": lambda: _single(grey),
     "single matte": lambda: _single(dull, one_sided),

@@ -12,6 +12,8 @@ from phong75.model.analysis import reference
 from phong75.model.analysis.metrics import error_metrics
 from phong75.model.config import DEFAULT as C
 from phong75.model.frame import SPAN_DTYPE, Frame, InputError, MaterialTable, half_vector_codes
+from phong75.model.front.scene import load_scene
+from phong75.model.scene_to_frame import front_end
 from phong75.model.studies.methods import CONFIGS
 from phong75.model.twin import render
 from phong75.model.twin.core.inverse_sqrt import inverse_sqrt
@@ -26,6 +28,8 @@ from phong75.model.twin.methods.quadratic_normalizer import quadratic_normalizer
 from phong75.model.twin.methods.quadratic_unit import interpolate
 from phong75.model.twin.methods.specular_power_schlick import specular_power_schlick
 from phong75.model.twin.methods.specular_power_squaring import specular_power_squaring
+from phong75.scripts.configurations import CONFIGURATIONS
+from phong75.sim.design import PACKAGE
 
 RNG = np.random.default_rng(75)
 ANGLES = (0.0, 0.3, 1.0, np.pi / 2, 2.5, 3.1, np.pi)
@@ -316,6 +320,16 @@ def test_a_steep_w_costs_what_the_budget_says():
     bound = budget.bound_lsb(frame)
     assert np.abs(codes - exact(normal, frame)).max() <= bound
     assert bound > budget.bound_lsb(frame_of(0.5, 1.0, (0, 0, 0), 0.0, 1.0)) + 0.1
+
+
+@pytest.mark.parametrize("name", ["colour_10", "colour_10_wide", "colour_12"])
+def test_colours_of_more_bits_within_the_derived_bound(name):
+    config = CONFIGURATIONS[name]
+    front = front_end(load_scene(PACKAGE / "model/data/highlights.toml", (72, 24)), config)
+    codes = render(front.frame, config).rgb
+    ports = reference.render(front.frame, config)
+    assert ports.max() > 0.9 * config.white > 255
+    assert np.abs(codes - ports).max() <= budget.bound_lsb(front.frame, config) < 1.1
 
 
 def test_nearly_all_colours_are_correctly_rounded():

@@ -2,6 +2,7 @@
 """The pictures of a frame show what they should, and the same pixels give the same bytes."""
 
 import numpy as np
+import png
 import pytest
 from PIL import Image
 
@@ -9,6 +10,8 @@ from phong75.model.analysis import pictures
 from phong75.model.analysis.pictures import canvas, excess, write_error_map, write_picture
 from phong75.model.config import DEFAULT
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable
+from phong75.model.twin import Pixels
+from phong75.scripts.configurations import CONFIGURATIONS
 
 WHITE, GREY = (255, 255, 255), (0xD3, 0xD7, 0xDC)
 ORANGE, BLUE = (0xE8, 0x59, 0x0C), (0x00, 0x57, 0xD8)
@@ -38,6 +41,24 @@ def test_picture_keeps_every_bit(tmp_path):
     with Image.open(tmp_path / "a.png") as file:
         assert file.mode == "RGB" and not file.info
         np.testing.assert_array_equal(np.asarray(file), picture)
+
+
+@pytest.mark.parametrize("name", ["colour_10", "colour_12"])
+def test_picture_of_more_bits_keeps_every_code(frame, tmp_path, name):
+    config = CONFIGURATIONS[name]
+    y, x = (axis.reshape(-1) for axis in np.indices((4, 5)))
+    codes = np.random.default_rng(1).integers(0, config.white + 1, (20, 3))
+    codes[0], codes[1] = 0, config.white
+    picture = canvas(frame, x, y, codes, config)
+    write_picture(tmp_path / "a.png", picture, config)
+    with open(tmp_path / "a.png", "rb") as file:
+        width, height, rows, information = png.Reader(file).read()
+        kept = np.array([list(row) for row in rows]).reshape(20, 3)
+    assert (width, height, information["bitdepth"]) == (5, 4, 16)
+    assert kept.min() == 0 and kept.max() == 65535
+    np.testing.assert_array_equal(np.floor(kept * config.white / 65535 + 0.5), codes)
+    shown = np.asarray(pictures.picture(frame, Pixels(x, y, codes, x > 9), config))
+    assert (shown[0, :2] == [[0] * 3, [255] * 3]).all()
 
 
 def maps_of(path):

@@ -238,7 +238,8 @@ MISTAKES = {
     with_material("colour = [0, 0, 0]"): r"materials.m.colour: unknown key; did you mean color\?",
     with_material("W = {degrees = [1], values = [1], x = 1}"): "materials.m.W.x: unknown key",
     "[camera]\nfow = 3\n" + MINIMAL: r"camera.fow: unknown key; did you mean fov\?",
-    "[light]\ncolor = 3\n" + MINIMAL: "light.color: unknown key",
+    "[light]\nhue = 3\n" + MINIMAL: "light.hue: unknown key",
+    "[light]\ncolor = 3\n" + MINIMAL: "light.color = 3 is not a list of numbers",
     MINIMAL + "material = {N = 3}": r"objects\[0\].material.N: unknown key",
     # size and switches
     "size = [0, 480]\n" + MINIMAL: "size = 0x480 is outside 1 to 4096 pixels",

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from phong75.model.config import DEFAULT, TECHNIQUES, Format
-from phong75.model.frame import SPAN_DTYPE, Frame, InputError, MaterialTable
+from phong75.model.frame import SPAN_DTYPE, Frame, InputError, MaterialTable, half_vector_codes
 from phong75.model.spans import (
     illegal_spans,
     pack,
@@ -38,7 +38,8 @@ def frame_of(spans, config=DEFAULT, width=64, height=48):
     ramp = np.linspace(0, 1, config.weight_points)
     table.set(1, (0.9, 0.5, 1.0), 0.25, ramp, 10.5, config)
     array = np.array(spans, SPAN_DTYPE)
-    return Frame(width, height, (-70000, 100001), True, (1, 2, 255), table, array)
+    half_vector = half_vector_codes([-0.6, 0.0, 0.8], config)
+    return Frame(width, height, half_vector, True, (1, 2, 255), table, array)
 
 
 def span(
@@ -82,9 +83,9 @@ def frames(draw):
     for index in draw(st.sets(st.integers(0, config.materials - 1))):
         weight = rng.random(config.weight_points)
         table.set(index, rng.random(3), rng.random(), weight, rng.uniform(1, 128), config)
-    half = tuple(int(c) for c in codes(config.half_vector, 2))
+    angle = rng.uniform(-np.pi, np.pi)
+    half = half_vector_codes([np.sin(angle), 0.0, np.cos(angle)], config)
     background = tuple(int(c) for c in rng.integers(0, 255, 3, endpoint=True))
-    half = half if any(half) else (1, 0)
     frame = Frame(width, height, half, draw(st.booleans()), background, table, spans)
     return config, frame
 
@@ -261,7 +262,10 @@ def setter(key, value):
         ("height", True, "height is true"),
         ("height", "10", 'height is "10"'),
         ("height", 10**40, "height is 1000"),
-        ("half_vector", [0, 0], "half_vector has length zero"),
+        ("half_vector", [0, 0], "half_vector has length 0.000000, not 1"),
+        ("half_vector", [1, 0], "half_vector has length 0.000008, not 1"),
+        ("half_vector", [93000, 1000], "half_vector has length 0.709575, not 1"),
+        ("half_vector", [131071, 1000], "half_vector has length 1.000021, not 1"),
         ("half_vector", [1], "half_vector is not a list of 2"),
         ("half_vector", [1, 1 << 17], "half_vector[1] is 131072"),
         ("half_vector", None, "half_vector is not a list"),

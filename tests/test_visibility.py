@@ -626,7 +626,7 @@ def test_registers_and_material_table():
         128 * DEFAULT.exponent.one,
     ]
     assert made.exact.weight[0] == pytest.approx(np.linspace(0, 1, DEFAULT.weight_points))
-    assert made.exact.cp.shape == (DEFAULT.materials, 3)
+    assert made.exact.ambient.shape == (DEFAULT.materials, 3)
 
 
 def test_seventy_thousand_triangles_at_full_hd():

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from phong75.model.arrays import ArrayLike, Ints
+from phong75.model.config import DEFAULT
 from phong75.model.twin import Pixels
 
 
@@ -70,12 +71,12 @@ def _row(rows: Ints, index: int) -> tuple[int, ...] | None:
 
 
 def rounded(exact: ArrayLike) -> Ints:
-    """The correctly rounded codes floor(exact + 1/2), int64, of `exact` = 255 clamp(S, 0, 1)."""
+    """The correctly rounded codes floor(exact + 1/2), int64, of `exact` = white clamp(S, 0, 1)."""
     return np.floor(np.asarray(exact, np.float64) + 0.5).astype(np.int64)
 
 
-def error_metrics(codes: ArrayLike, exact: ArrayLike) -> dict[str, Any]:
-    """Error of `codes` (integers[n, 3]) against `exact` = 255 clamp(S, 0, 1) (float64[n, 3]).
+def error_metrics(codes: ArrayLike, exact: ArrayLike, white: int = DEFAULT.white) -> dict[str, Any]:
+    """Error of `codes` (integers[n, 3]) against `exact` = white clamp(S, 0, 1) (float64[n, 3]).
 
     `exact` is not rounded, so that perfect codes have errors of up to 1/2 LSB. Pass only shaded
     pixels, no background. The keys of the result:
@@ -83,7 +84,7 @@ def error_metrics(codes: ArrayLike, exact: ArrayLike) -> dict[str, Any]:
     - max_lsb, mean_lsb, rms_lsb: maximum, mean and RMS of the error's magnitude, LSB.
     - p999_lsb: 99.9 % quantile: that many channel values have at most this error, LSB.
     - correctly_rounded: fraction of the channel values that equal `rounded(exact)`.
-    - psnr_db: peak signal-to-noise ratio, dB, peak 255; None if all errors are 0.
+    - psnr_db: peak signal-to-noise ratio, dB, peak `white`; None if all errors are 0.
 
     Without pixels the errors are 0 LSB, the fraction is 1 and the PSNR None. Raises ValueError if
     the shapes differ.
@@ -104,5 +105,5 @@ def error_metrics(codes: ArrayLike, exact: ArrayLike) -> dict[str, Any]:
         "rms_lsb": mean_square**0.5,
         "p999_lsb": float(np.quantile(error, 0.999, method="higher")),
         "correctly_rounded": float(np.mean(codes == rounded(exact))),
-        "psnr_db": 10 * float(np.log10(255**2 / mean_square)) if mean_square else None,
+        "psnr_db": 10 * float(np.log10(white**2 / mean_square)) if mean_square else None,
     }

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
 from phong75.model.arrays import Flags, Reals
+from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import Frame
 from phong75.model.twin import Pixels
 
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.colors import Colormap
 
 #: What a pixel of a picture is: codes or reals.
-Shown = TypeVar("Shown", np.uint8, np.float64)
+Shown = TypeVar("Shown", np.uint8, np.uint16, np.float64)
 
 #: Largest error of perfect rounding to codes.
 PERFECT_LSB = 0.5
@@ -45,29 +46,50 @@ _ABOVE = "#e8590c"  # more than 1/2 LSB, in the map of |error|
 _BROKEN = "#0057d8"  # more than the derived bound
 
 
-def canvas(frame: Frame, x: ArrayLike, y: ArrayLike, rgb: ArrayLike) -> NDArray[np.uint8]:
+def canvas(
+    frame: Frame, x: ArrayLike, y: ArrayLike, rgb: ArrayLike, config: Config = DEFAULT
+) -> NDArray[np.uint8 | np.uint16]:
     """The picture of the pixels at `x`, `y` (int[n]) with codes `rgb` (int[n, 3]).
 
-    Returns uint8[height, width, 3]. Positions without a pixel show the frame's background. Of two
-    pixels at one position the later one is shown. Pixels outside the frame, which only a faulty
-    stream has, are left out.
+    Returns uint8[height, width, 3], or uint16 if `config.colour_bits` is more than 8. Positions
+    without a pixel show the frame's background. Of two pixels at one position the later one is
+    shown. Pixels outside the frame, which only a faulty stream has, are left out.
     """
-    picture = np.empty((frame.height, frame.width, 3), np.uint8)
+    codes = np.uint8 if config.colour_bits <= 8 else np.uint16
+    picture = np.empty((frame.height, frame.width, 3), codes)
     picture[:] = frame.background
     return _place(picture, x, y, rgb)
 
 
-def picture(frame: Frame, pixels: Pixels) -> Image.Image:
+def picture(frame: Frame, pixels: Pixels, config: Config = DEFAULT) -> Image.Image:
     """The picture of `pixels` of `frame` as a PIL image (RGB), which a notebook shows as it is.
 
-    pixels: of `render`, or of a simulation.
+    pixels: of `render`, or of a simulation. Codes of other than 8 bits are brought to 8.
     """
-    return Image.fromarray(canvas(frame, pixels.x, pixels.y, pixels.rgb))
+    codes = canvas(frame, pixels.x, pixels.y, pixels.rgb, config)
+    if config.colour_bits != 8:
+        codes = (codes * (255 / config.white) + 0.5).astype(np.uint8)
+    return Image.fromarray(codes)
 
 
-def write_picture(path: str | Path, picture: NDArray[np.uint8]) -> None:
-    """Write `picture` (uint8[height, width, 3]) as PNG. Raises OSError."""
-    Image.fromarray(picture).save(path, format="PNG")
+def write_picture(
+    path: str | Path, picture: NDArray[np.uint8 | np.uint16], config: Config = DEFAULT
+) -> None:
+    """Write `picture`, codes[height, width, 3] of `config.colour_bits`, as PNG. Raises OSError.
+
+    A PNG has 8 or 16 bits. Other codes are scaled to the next of the two, and the file says how
+    many bits count (its chunk sBIT), so that a reader gets the codes back.
+    """
+    bits = config.colour_bits
+    if bits == 8:
+        Image.fromarray(picture).save(path, format="PNG")
+        return
+    import png  # only for these; Pillow writes no colours of 16 bits
+
+    height, width, channels = picture.shape
+    writer = png.Writer(width, height, greyscale=False, bitdepth=bits)
+    with open(path, "wb") as file:
+        writer.write(file, picture.reshape(height, width * channels))
 
 
 def excess(error: ArrayLike) -> Reals:

@@ -2,7 +2,8 @@
 """Float64 reference: eq. (3) of Phong (1975), implemented from the paper, not from the hardware.
 
 The reference shares no arithmetic with the twin: it has no tables and no rounding, and it computes
-cos(s) in the form of the paper.
+cos(s) in the form of the paper. With several lights it sums OpenGL's model over them (see
+`shade_lights`).
 """
 
 from __future__ import annotations
@@ -22,15 +23,16 @@ def shade(
     exponent: Reals,
     eye: Reals,
     two_sided: bool,
+    white: int = DEFAULT.white,
 ) -> Reals:
-    """255 clamp(S, 0, 1) by the paper's eq. (3), float64[n, 3].
+    """The code white clamp(S, 0, 1) by the paper's eq. (3), float64[n, 3].
 
     normal: float64[n, 3], any length, light frame.
     cp_d, cp_rest: float64[n, 3], Cp d and Cp (1 - d), 0 to 1.
     weight: float64[n, P], W at P equally spaced Zn from 0 to 1.
     exponent: float64[n], n of eq. (3).
     eye: float64[3] or [n, 3], unit vector u, light frame.
-    two_sided: shade |Zn|.
+    two_sided: shade |Zn|. white: the code of S = 1.
 
     A zero normal, or one that points away from the light, gives Cp d.
     """
@@ -48,7 +50,49 @@ def shade(
     w = weight[row, left] + (weight[row, left + 1] - weight[row, left]) * (position - left)
     s = cp_d + np.where(lit, cos_i, 0)[:, None] * cp_rest
     s = s + np.where(lit, w * cos_s**exponent, 0)[:, None]
-    return 255 * np.clip(s, 0, 1)
+    return white * np.clip(s, 0, 1)
+
+
+def shade_lights(
+    vectors: Reals,
+    material: Ints,
+    ambient: Reals,
+    diffuse: Reals,
+    highlight: Reals,
+    weight: Reals,
+    exponent: Reals,
+    eyes: Reals,
+    two_sided: bool,
+    white: int = DEFAULT.white,
+) -> Reals:
+    """The code white clamp(I, 0, 1), float64[n, 3], of the illumination model with several lights:
+
+    I = e + ka Ia + sum over lights of (ka La + kd Ld (N.L) + ks Ls W(i) (R.V)**n).
+
+    vectors: float64[L, n, 3], the normal in the frame of each of L lights, divided by the length of
+    the first one: unit vectors, but for the rounding of the ports. Components beyond 1 count as 1.
+    material: int64[n]. ambient: float64[M, 3], the part without a direction. diffuse, highlight:
+    float64[L, M, 3], kd Ld and ks Ls. weight: float64[M, P], exponent: float64[M], as in `shade`.
+    eyes: float64[L, 3]. two_sided: shade |N.L| of each light.
+
+    R.V is 2 (N.L) (N.V) - L.V for a unit vector N. For another length it is continued as
+    2 (N.L) (N.V) + 1 - (1 + L.V) |N|**2, which is 1 - 2 (x**2 + y**2) with x and y of N x H.
+    """
+    total, weight, exponent = ambient[material], weight[material], exponent[material]
+    points = weight.shape[1]
+    row = np.arange(vectors.shape[1])
+    for n, kd, ks, eye in zip(np.clip(vectors, -1, 1), diffuse, highlight, eyes, strict=True):
+        cos_i = np.abs(n[:, 2]) if two_sided else n[:, 2]
+        lit = (cos_i > 0)[:, None]
+        along = (n * eye).sum(axis=1)
+        cos_s = 2 * n[:, 2] * along + 1 - (1 + eye[2]) * (n**2).sum(axis=1)
+        position = np.clip(cos_i, 0, 1) * (points - 1)
+        left = np.minimum(position.astype(np.int64), points - 2)
+        w = weight[row, left] + (weight[row, left + 1] - weight[row, left]) * (position - left)
+        specular = w * np.maximum(cos_s, 0) ** exponent
+        terms = kd[material] * cos_i[:, None] + ks[material] * specular[:, None]
+        total = total + np.where(lit, terms, 0)
+    return white * np.clip(total, 0, 1)
 
 
 def _pixels(spans: Spans, start: Reals, step: Reals, bend: Reals) -> tuple[Reals, Ints]:
@@ -93,7 +137,7 @@ def zero_normals(frame: Frame, config: Config = DEFAULT) -> int:
 
 
 def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:
-    """255 clamp(S, 0, 1) from the integers at the ports and in the tables, float64[n, 3].
+    """The code white clamp(S, 0, 1) of the integers at the ports and in the tables, float64[n, 3].
 
     Rows are in the order of the stream. The comparison with the pipeline's codes shows the error of
     the pipeline alone.
@@ -101,27 +145,83 @@ def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:
     differences = _differences(frame.spans, config)
     if config.technique != "phong":
         intensity, _ = _pixels(frame.spans, *differences)
-        return 255 * np.clip(intensity / config.normal.one, 0, 1)
+        return config.white * np.clip(intensity / config.normal.one, 0, 1)
     normal, material = _pixels(frame.spans, *differences)
     table, real = frame.materials, config.coefficient.real
+    if config.sums_lights or frame.further or table.highlight is not None:
+        lights = [frame.light(number, config) for number in range(frame.lights)]
+        return shade_lights(
+            shared_length(frame), material, real(table.ambient),
+            np.stack([real(light.diffuse) for light in lights]),
+            np.stack([real(light.highlight) for light in lights]),
+            real(table.weight), config.exponent.real(table.exponent),
+            np.stack([eye_of(light.half_vector) for light in lights]), frame.two_sided,
+            config.white,
+        )  # fmt: skip
     return shade(
         normal, real(table.ambient)[material], real(table.diffuse)[material],
         real(table.weight)[material], config.exponent.real(table.exponent)[material],
-        eye_of(frame.half_vector), frame.two_sided,
+        eye_of(frame.half_vector), frame.two_sided, config.white,
     )  # fmt: skip
 
 
+def shared_length(frame: Frame) -> Reals:
+    """The normal of every pixel in the frame of each light, float64[L, n, 3], divided by the length
+    of the first light's.
+
+    All are zero where the first light's normal is. A normal that takes k > 1 bits more than that of
+    the first light is first divided by 2**(k - 1); normals of one vector never are.
+    """
+    lights = [(frame.spans["start"], frame.spans["step"])]
+    lights += [(light.start, light.step) for light in frame.further]
+    straight = np.zeros((len(frame.spans), 3))  # no light of several has a bend
+    normals = np.stack(
+        [_pixels(frame.spans, a.astype(float), b.astype(float), straight)[0] for a, b in lights]
+    )
+    length = np.sqrt((normals[0] ** 2).sum(axis=1))
+    # A word of k bits beside its sign holds -2**k to 2**k - 1.
+    bits = np.frexp(np.where(normals < 0, -normals - 1, normals).max(axis=2))[1]
+    beyond = np.maximum(bits - bits[0] - 1, 0)
+    reached = length > 0
+    scale = np.ldexp(1 / np.where(reached, length, 1), -beyond) * reached
+    return normals * scale[..., None]
+
+
 def render_exact(frame: Frame, exact: ExactFrame, config: Config = DEFAULT) -> np.ndarray:
-    """255 clamp(S, 0, 1) from the scene's values before any rounding, float64[n, 3].
+    """The code white clamp(S, 0, 1) from the scene's values before any rounding, float64[n, 3].
 
     exact: the values that were rounded to `frame`. The comparison with the pipeline's codes also
     shows the error of rounding the input.
     """
     normal, m = _pixels(frame.spans, exact.start, exact.step, exact.bend)
     if config.technique != "phong":
-        return 255 * np.clip(normal, 0, 1)
-    cp, d = exact.cp, exact.d[:, None]
-    return shade(
-        normal, (cp * d)[m], (cp * (1 - d))[m], exact.weight[m], exact.exponent[m],
-        exact.eye, frame.two_sided,
+        return config.white * np.clip(normal, 0, 1)
+    return shade_exact(normal, m, exact, frame.two_sided, config.white)
+
+
+def shade_exact(
+    normal: Reals,
+    material: Ints,
+    exact: ExactFrame,
+    two_sided: bool,
+    white: int = DEFAULT.white,
+) -> Reals:
+    """The code white clamp(S, 0, 1) of normals before any rounding, float64[n, 3].
+
+    normal: float64[n, 3], any length, in the first light's frame. material: int64[n].
+    """
+    m, further = material, exact.further
+    if not further and (exact.highlight == 1).all():
+        return shade(
+            normal, exact.ambient[m], exact.diffuse[m], exact.weight[m], exact.exponent[m],
+            exact.eye, two_sided, white,
+        )  # fmt: skip
+    length = np.sqrt((normal**2).sum(axis=1))
+    unit = normal / np.where(length > 0, length, 1)[:, None]
+    return shade_lights(
+        np.stack([unit, *(unit @ light.turn.T for light in further)]), m, exact.ambient,
+        np.stack([exact.diffuse, *(light.diffuse for light in further)]),
+        np.stack([exact.highlight, *(light.highlight for light in further)]),
+        exact.weight, exact.exponent,
+        np.stack([exact.eye, *(light.eye for light in further)]), two_sided, white,
     )  # fmt: skip

@@ -16,10 +16,11 @@ import numpy as np
 
 from phong75.model.arrays import ArrayLike, Ints, Reals
 from phong75.model.frame import InputError
+from phong75.model.front import notes
 from phong75.model.front.surface import Surface, Transformed
 
 #: Supported mesh files, by suffix.
-MESH_SUFFIXES = (".obj", ".ply", ".stl", ".glb")
+MESH_SUFFIXES = (".obj", ".ply", ".stl", ".glb", notes.OBJECT_SUFFIX)
 
 #: Default crease angle, degrees: edges that bend by more than this stay sharp.
 DEFAULT_CREASE = 60.0
@@ -73,6 +74,12 @@ class Mesh:
             faces, normals = faces[:, ::-1], normals[:, ::-1]
         surface = self.surface and Transformed(self.surface, matrix, shift)
         return Mesh(vertices, faces, normals, self.degenerate, surface)
+
+    def faceted(self) -> Mesh:
+        """A new Mesh with the normal of its face at every corner: flat shading by constant normals
+        (Starkey, "Shading Techniques", section 1)."""
+        normals = np.repeat(face_normals(self.vertices, self.faces)[:, None], 3, axis=1)
+        return Mesh(self.vertices, self.faces, normals, self.degenerate)
 
     def with_crease(self, crease: float) -> Mesh:
         """A new Mesh with normals computed from the faces (see `corner_normals`)."""
@@ -313,6 +320,8 @@ def _read_parts(path: Path) -> tuple[Reals, Ints, Reals | None]:
 
     The parts of the file are transformed to scene coordinates and joined. Raises InputError.
     """
+    if path.suffix.lower() == notes.OBJECT_SUFFIX:
+        return *notes.triangles(notes.read_object(path)), None
     import trimesh  # here because the import takes a third of a second; scenes of shapes skip it
 
     try:

@@ -9,10 +9,19 @@ value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All
     two_sided = false               # light both sides of surfaces, cull no back faces
     interpolation = "linear"        # as in the paper; or "normalized_edges", or "quadratic",
                                     # "quadratic_vlachos", "quadratic_exact" (`mid_edge_normals`)
+    shading = "smooth"              # of objects that do not say; "flat": one normal per face
 
-    [light]
+    ambient = [1.0, 1.0, 1.0]       # Ia, light without a direction
+    exposure = 1.0                  # factor of all intensities; or "Imax": no channel saturates
+
+    [light]                         # or [[lights]], up to 8
     direction = [-0.5, 0.6, 1.0]    # towards the light, any length
     relative_to = "camera"          # x right, y up, z to the eye; or "scene" (default)
+    color = [1.0, 1.0, 1.0]         # of its diffuse and its specular light; or one by one:
+    ambient = [0.0, 0.0, 0.0]       # La
+    diffuse = [1.0, 1.0, 1.0]       # Ld
+    specular = [1.0, 1.0, 1.0]      # Ls
+    name = "key light"
 
     [camera]                        # omitted keys are chosen so that all objects are visible
     projection = "orthographic"     # or "perspective"
@@ -21,7 +30,8 @@ value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All
     target = [0, 0, 0]              # the point in the middle of the picture
     up = [0, 0, 1]
     height = 4.0                    # orthographic: scene units from top to bottom
-    fov = 30                        # perspective: degrees from top to bottom
+    fov = 30                        # perspective: degrees from top to bottom; or
+    screen_distance = 800           #   pixels from the eye to the screen
     near = 0.01                     # perspective: distance of the near plane
 
     [materials.NAME]                # eq. (3) of the paper; up to 16
@@ -30,19 +40,26 @@ value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All
     n = 10                          # 1 to 128, whole or not
     W = 0.4                         # or values at equally spaced Zn = cos(i) from 0 to 1, or
     W = { degrees = [0, 60, 90], values = [0.2, 0.3, 0.8] }  # at incident angles i
+    ambient = [0.1, 0.1, 0.1]       # ka; default: color times d
+    diffuse = [0.6, 0.5, 0.4]       # kd; default: color times (1 - d)
+    specular = [0.9, 0.7, 0.3]      # ks; default: 1 each; with this key W is 1 by default
+    emission = [0.0, 0.0, 0.0]      # e
 
     [[objects]]
     shape = "teapot"                # or sphere, torus, cone, pyramid
     divisions = 10                  # the parameters of a shape's function (`shapes`) are keys
     mesh = "bunny.obj"              # instead of `shape`: a mesh file, relative to the scene file
     crease = 60                     # edges that bend more (degrees) are sharp; recomputes normals
+    shading = "flat"                # or "smooth"
     scale = 1.0                     # or [x, y, z]; applied first
     rotate = [0, 0, 0]              # degrees about x, y, z; applied after the scale
     translate = [0, 0, 0]           # applied last
     material = "NAME"               # or { color = ..., n = ... }
     name = "my teapot"
 
-W is piecewise linear in Zn between the given points and constant beyond them.
+W is piecewise linear in Zn between the given points and constant beyond them. The intensity is
+
+    I = e + ka Ia + sum over lights of (ka La + kd Ld cos(i) + ks Ls W(i) cos(s)**n).
 """
 
 from __future__ import annotations
@@ -52,16 +69,16 @@ import inspect
 import math
 import tomllib
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
 from phong75.model.arrays import ArrayLike, Reals
-from phong75.model.config import DEFAULT, Config
+from phong75.model.config import DEFAULT, MAX_LIGHTS, Config
 from phong75.model.frame import InputError
-from phong75.model.front import mid_edge_normals, shapes
+from phong75.model.front import mid_edge_normals, notes, shapes
 from phong75.model.front.camera import (
     DEFAULT_DIRECTION,
     DEFAULT_FOV,
@@ -80,6 +97,7 @@ TECHNIQUE_SCENES = SCENES / "techniques"
 DEFAULT_SIZE = (640, 480)
 DEFAULT_BACKGROUND = (0.05, 0.06, 0.08)
 INTERPOLATIONS = ("linear", "normalized_edges", *mid_edge_normals.RULES)
+SHADINGS = ("smooth", "flat")
 
 SHAPES: dict[str, Callable[..., Mesh]] = {
     "sphere": shapes.sphere,
@@ -92,6 +110,16 @@ SHAPES: dict[str, Callable[..., Mesh]] = {
 #: Largest tessellation parameters. Finer meshes only take memory: at these values triangles are
 #: far smaller than a pixel.
 MAX_TESSELLATION = {"divisions": 128, "segments": 1024, "sides": 1024, "rings": 1024}
+
+#: A colour of a light or a material: red, green, blue, 0 or more.
+Colour = tuple[float, float, float]
+
+WHITE: Colour = (1.0, 1.0, 1.0)
+BLACK: Colour = (0.0, 0.0, 0.0)
+
+#: Largest component of a light's colour, before `exposure`. The products with the coefficients of
+#: materials have to fit their words.
+MOST_LIGHT = 1e6
 
 #: What a method of `_Table` returns for a missing key.
 Default = TypeVar("Default")
@@ -106,6 +134,8 @@ class Material:
     n: specular exponent, 1 to 128.
     weight_zn, weight_values: points of W(i): increasing Zn = cos(i) and W there, both 0 to 1. W is
     piecewise linear in Zn between the points and constant beyond them.
+    ambient, diffuse, specular: ka, kd, ks of OpenGL's model, 0 to 1; None for the paper's rule, by
+    which they are Cp d, Cp (1 - d) and 1. emission: e, 0 to 1.
     """
 
     color: tuple[float, float, float] = (0.65, 0.62, 0.58)
@@ -113,10 +143,46 @@ class Material:
     n: float = 10.0
     weight_zn: tuple[float, ...] = (0.0, 1.0)
     weight_values: tuple[float, ...] = (0.4, 0.4)
+    ambient: Colour | None = None
+    diffuse: Colour | None = None
+    specular: Colour | None = None
+    emission: Colour = BLACK
+
+    @property
+    def ka(self) -> Reals:
+        """Ambient reflection of red, green and blue, float64[3]."""
+        return np.asarray(self.color) * self.d if self.ambient is None else np.array(self.ambient)
+
+    @property
+    def kd(self) -> Reals:
+        """Diffuse reflection of red, green and blue, float64[3]."""
+        if self.diffuse is None:
+            return np.asarray(self.color) * (1 - self.d)
+        return np.array(self.diffuse)
+
+    @property
+    def ks(self) -> Reals:
+        """Specular reflection of red, green and blue, float64[3]."""
+        return np.array(self.specular or WHITE)
 
     def weight(self, zn: ArrayLike) -> Reals:
         """W at `zn` (any shape), float64."""
         return np.interp(np.asarray(zn, np.float64), self.weight_zn, self.weight_values)
+
+
+@dataclass(frozen=True)
+class Light:
+    """A light at infinity.
+
+    direction: float64[3], unit vector towards the light, scene axes. ambient, diffuse, specular:
+    La, Ld, Ls of red, green and blue, 0 or more.
+    """
+
+    direction: Reals
+    ambient: Colour = BLACK
+    diffuse: Colour = WHITE
+    specular: Colour = WHITE
+    name: str = "light"
 
 
 @dataclass
@@ -133,9 +199,10 @@ class Scene:
     """A checked scene, ready for the front end.
 
     width, height: pixels. background: red, green, blue, 0 to 1. light: float64[3], unit vector
-    towards the light, scene axes. two_sided: shade both sides of surfaces, cull no back faces.
-    interpolation: "linear" (the paper's), "normalized_edges" (see `interpolation`) or one of
-    `mid_edge_normals.RULES`.
+    towards the first light, scene axes. two_sided: shade both sides of surfaces, cull no back
+    faces. interpolation: "linear" (the paper's), "normalized_edges" (see `interpolation`) or one of
+    `mid_edge_normals.RULES`. ambient: Ia of red, green and blue. lights: all lights, by default a
+    white one at `light`. remarks: sentences about what was assumed where the file leaves it open.
     """
 
     name: str
@@ -148,6 +215,12 @@ class Scene:
     interpolation: str
     objects: list[SceneObject]
     materials: list[Material] = field(default_factory=lambda: [Material()])
+    ambient: Colour = WHITE
+    lights: list[Light] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.lights = self.lights or [Light(self.light)]
 
     def __repr__(self) -> str:
         triangles = sum(len(item.mesh.faces) for item in self.objects)
@@ -170,7 +243,7 @@ def technique_scenes() -> list[str]:
 def load_scene(
     name_or_path: str | Path, size: tuple[int, int] | None = None, config: Config = DEFAULT
 ) -> Scene:
-    """Load a bundled scene (by name), a scene file (.toml) or a mesh file.
+    """Load a bundled scene (by name), a scene file (.toml or .scn, see `notes`) or a mesh file.
 
     A mesh file gets the default camera, light and material. size: (width, height) in pixels,
     overrides the scene's size. config: limits of the size and of the number of materials. Raises
@@ -194,9 +267,17 @@ def load_scene(
     suffix = path.suffix.lower()
     if suffix == ".toml":
         return _scene(_Table(_read_toml(path), str(path)), path, size, config)
+    if suffix == notes.SCENE_SUFFIX:
+        table, remarks = notes.scene_table(path)
+        scene = _scene(_Table(table, str(path)), path, size, config)
+        scene.remarks = remarks + scene.remarks
+        return scene
     if suffix in MESH_SUFFIXES:
         return _mesh_scene(path, size, config)
-    raise InputError(f"{name}: neither a scene (.toml) nor a mesh ({', '.join(MESH_SUFFIXES)})")
+    raise InputError(
+        f"{name}: neither a scene (.toml, {notes.SCENE_SUFFIX}) "
+        f"nor a mesh ({', '.join(MESH_SUFFIXES)})"
+    )
 
 
 def _mesh_scene(path: Path, size: tuple[int, int] | None, config: Config) -> Scene:
@@ -208,14 +289,14 @@ def _mesh_scene(path: Path, size: tuple[int, int] | None, config: Config) -> Sce
         table["direction"] = [0.35, 0.35, 1.0]
     root = _Table({"camera": table}, str(path))
     width, height = _size(root, size, config)
-    camera = _camera(root.table("camera"), mesh.vertices, width / height)
+    camera = _camera(root.table("camera"), mesh.vertices, width, height)
     return Scene(
         path.stem,
         width,
         height,
         DEFAULT_BACKGROUND,
         camera,
-        _light(root.table("light"), camera),
+        _light(root.table("light"), camera).direction,
         # Two-sided if the winding is mixed: culling by winding would hide visible faces at random.
         not is_consistent(mesh),
         "linear",
@@ -228,6 +309,7 @@ def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Confi
     background = root.triple("background", DEFAULT_BACKGROUND, 0.0, 1.0)
     two_sided = root.boolean("two_sided", False)
     interpolation = root.choice("interpolation", INTERPOLATIONS, "linear")
+    shading = root.choice("shading", SHADINGS, "smooth")
     materials: list[Material] = []
     indices: dict[str | None, int] = {}
     for name, table in root.tables_by_name("materials"):
@@ -235,7 +317,7 @@ def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Confi
         materials.append(_material(table))
     objects = []
     for number, table in enumerate(root.list_of_tables("objects")):
-        objects.append(_object(table, number, path, materials, indices))
+        objects.append(_object(table, number, path, materials, indices, shading))
     if not objects:
         raise root.error("objects", "missing: a scene needs at least one [[objects]] table")
     if len(materials) > config.materials:
@@ -243,8 +325,10 @@ def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Confi
             "materials", f"{len(materials)} materials, but the table has {config.materials} entries"
         )
     points = np.concatenate([o.mesh.vertices for o in objects])
-    camera = _camera(root.table("camera"), points, width / height)
-    light = _light(root.table("light"), camera)
+    camera = _camera(root.table("camera"), points, width, height)
+    lights = _lights(root, camera)
+    ambient = root.triple("ambient", WHITE, 0.0, MOST_LIGHT)
+    exposure, remarks = _exposure(root, materials, lights, ambient)
     root.finish()
     return Scene(
         path.stem,
@@ -252,11 +336,50 @@ def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Confi
         height,
         background,
         camera,
-        light,
+        lights[0].direction,
         two_sided,
         interpolation,
         objects,
-        materials,
+        [replace(m, emission=_scaled(m.emission, exposure)) for m in materials],
+        _scaled(ambient, exposure),
+        [_exposed(light, exposure) for light in lights],
+        remarks,
+    )
+
+
+def _exposure(
+    root: _Table, materials: list[Material], lights: list[Light], ambient: Colour
+) -> tuple[float, list[str]]:
+    """The factor of all intensities, and a sentence about it if the scene file does not give it.
+
+    "Imax" is 1/Imax, with Imax of the notes' "Intensity Computations": the formula with all
+    products of vectors 1 and the largest coefficients of the scene's materials, W among them, in
+    the colour in which it is largest. No channel saturates then.
+    """
+    if root.value("exposure", None) != "Imax":
+        return root.real("exposure", 1.0, 1e-6, 1e6), []
+    ka, kd = (np.max([getattr(m, k) for m in materials], axis=0) for k in ("ka", "kd"))
+    ks = np.max([m.ks * max(m.weight_values) for m in materials], axis=0)
+    total = np.max([m.emission for m in materials], axis=0) + ka * ambient
+    for light in lights:
+        total = total + ka * light.ambient + kd * light.diffuse + ks * light.specular
+    largest = float(max(total))
+    if largest == 0:
+        raise root.error("exposure", '= "Imax": no light is reflected at all, Imax is 0')
+    return 1 / largest, [f"Imax is {largest:g}: all intensities are divided by it"]
+
+
+def _scaled(colour: Colour, factor: float) -> Colour:
+    red, green, blue = (factor * c for c in colour)
+    return red, green, blue
+
+
+def _exposed(light: Light, factor: float) -> Light:
+    return replace(
+        light,
+        ambient=_scaled(light.ambient, factor),
+        diffuse=_scaled(light.diffuse, factor),
+        specular=_scaled(light.specular, factor),
     )
 
 
@@ -296,14 +419,22 @@ def _size(root: _Table, size: tuple[int, int] | None, config: Config) -> tuple[i
 def _material(table: _Table) -> Material:
     default = Material()
     zn, values = _weight(table)
+    colours = {key: table.triple(key, None, 0.0, 1.0) for key in ("ambient", "diffuse", "specular")}
+    if colours["specular"] and not values:  # OpenGL's model has no W
+        zn, values = (0.0, 1.0), (1.0, 1.0)
     material = Material(
         table.triple("color", default.color, 0.0, 1.0),
         table.real("d", default.d, 0.0, 1.0),
         table.real("n", default.n, 1.0, 128.0),
         zn or default.weight_zn,
         values or default.weight_values,
+        emission=table.triple("emission", BLACK, 0.0, 1.0),
+        **colours,
     )
     table.finish()
+    for key in ("color", "d"):
+        if key in table.values and colours["ambient"] and colours["diffuse"]:
+            raise table.error(key, "has no effect beside ambient and diffuse")
     return material
 
 
@@ -339,6 +470,7 @@ def _object(
     path: Path,
     materials: list[Material],
     indices: dict[str | None, int],
+    shading: str,
 ) -> SceneObject:
     shape = table.choice("shape", tuple(SHAPES), None)
     file = table.text("mesh", None)
@@ -356,6 +488,8 @@ def _object(
             mesh = load_mesh(path.parent / file, crease)
         except InputError as error:
             raise InputError(f"{table.where('mesh')}: {error}") from None
+    if table.choice("shading", SHADINGS, shading) == "flat":
+        mesh = mesh.faceted()
     if isinstance(table.value("scale", 1.0), list):
         scale = table.triple("scale", (1.0, 1.0, 1.0))
     else:
@@ -401,29 +535,39 @@ def _shape(table: _Table, shape: str) -> Mesh:
     return SHAPES[shape](**arguments)
 
 
-def _camera(table: _Table, points: Reals, aspect: float) -> Camera:
+def _camera(table: _Table, points: Reals, width: int, height_px: int) -> Camera:
     """The camera of a [camera] table. Missing keys are chosen so that `points` fill the picture.
 
-    points: float64[V, 3], all vertices of the scene. aspect: width / height.
+    points: float64[V, 3], all vertices of the scene. width, height_px: of the picture, pixels.
     """
+    aspect = width / height_px
     projection = table.choice("projection", ("orthographic", "perspective"), "orthographic")
     perspective = projection == "perspective"
     eye, direction = table.triple("eye", None), table.triple("direction", None)
     target, up = table.triple("target", None), table.triple("up", None)
     height, fov = table.real("height", None), table.real("fov", None)
-    near = table.real("near", None)
+    near, screen = table.real("near", None), table.real("screen_distance", None)
     if eye is not None and direction is not None:
         raise table.error("direction", "and eye cannot both be given")
     if height is not None and perspective:
         raise table.error("height", "is for orthographic cameras; perspective ones have fov")
-    for key, value in (("fov", fov), ("near", near)):
+    for key, value in (("fov", fov), ("near", near), ("screen_distance", screen)):
         if value is not None and not perspective:
             raise table.error(key, "is for perspective cameras; orthographic ones have height")
-    for key, value in (("height", height), ("near", near)):
+    for key, value in (("height", height), ("near", near), ("screen_distance", screen)):
         if value is not None and value <= 0:
             raise table.error(key, f"= {value:g} is not greater than 0")
     if fov is not None and not 1.0 <= fov <= 170.0:
         raise table.error("fov", f"= {fov:g} is outside [1, 170] degrees")
+    if screen is not None:
+        if fov is not None:
+            raise table.error("screen_distance", "and fov cannot both be given")
+        fov = math.degrees(2 * math.atan(height_px / 2 / screen))
+        if not 1.0 <= fov <= 170.0:
+            raise table.error(
+                "screen_distance",
+                f"= {screen:g} shows {fov:.4g} degrees from top to bottom, outside [1, 170]",
+            )
     if up is not None and not any(up):
         raise table.error("up", "= [0, 0, 0] has no direction")
     table.finish()
@@ -457,11 +601,30 @@ def _camera(table: _Table, points: Reals, aspect: float) -> Camera:
     return Camera(projection, axes, centre, centre + axes[2], height=height or fitting)
 
 
-def _light(table: _Table, camera: Camera) -> Reals:
-    """Unit vector towards the light, float64[3], scene axes."""
+def _lights(root: _Table, camera: Camera) -> list[Light]:
+    """The lights of [light] or [[lights]]; one of the default direction if there is neither."""
+    tables = root.list_of_tables("lights")
+    single = root.table("light")
+    if not tables:
+        return [_light(single, camera)]
+    if single.values:
+        raise root.error("light", "and lights cannot both be given")
+    if len(tables) > MAX_LIGHTS:
+        raise root.error("lights", f"{len(tables)} lights, but there are at most {MAX_LIGHTS}")
+    return [_light(table, camera) for table in tables]
+
+
+def _light(table: _Table, camera: Camera) -> Light:
+    """The light of a table; without a direction, that of the default light."""
     components = table.triple("direction", None)
     relative_to = table.choice("relative_to", ("scene", "camera"), "scene")
+    name = table.text("name", "light")
+    colour = table.triple("color", None, 0.0, MOST_LIGHT)
+    parts = {key: table.triple(key, None, 0.0, MOST_LIGHT) for key in ("diffuse", "specular")}
+    ambient = table.triple("ambient", BLACK, 0.0, MOST_LIGHT)
     table.finish()
+    if colour is not None and all(parts.values()):
+        raise table.error("color", "has no effect beside diffuse and specular")
     if components is None:
         components, relative_to = DEFAULT_LIGHT, "camera"
     direction = np.asarray(components)
@@ -470,7 +633,8 @@ def _light(table: _Table, camera: Camera) -> Reals:
     direction = direction / np.max(np.abs(direction))
     if relative_to == "camera":
         direction = direction @ camera.axes
-    return direction / np.linalg.norm(direction)
+    diffuse, specular = (part or colour or WHITE for part in parts.values())
+    return Light(direction / np.linalg.norm(direction), ambient, diffuse, specular, name)
 
 
 def _show(value: object) -> str:

@@ -3,7 +3,8 @@
 
 The camera projects the triangles of the scene's objects (`camera`). Hidden surfaces are removed per
 scan line, which leaves visible segments (`visibility`). Each segment becomes a span: the normal at
-its first pixel and the step from pixel to pixel (`interpolation`), in the light frame.
+its first pixel and the step from pixel to pixel (`interpolation`), in the light frame. With several
+lights, the same vectors are also turned into the frame of each further light.
 
 If the scene asks for quadratic normals, the triangles have normals in the middle of their edges as
 well (`mid_edge_normals`), and a span has a bend: how much its step grows from pixel to pixel.
@@ -26,7 +27,9 @@ from phong75.model.config import Config
 from phong75.model.frame import (
     SPAN_DTYPE,
     ExactFrame,
+    ExactLight,
     Frame,
+    FurtherLight,
     InputError,
     MaterialTable,
     half_vector_codes,
@@ -41,7 +44,7 @@ from phong75.model.front.interpolation import (
 )
 from phong75.model.front.mesh import Mesh, apply_matrix, face_normals, normalize
 from phong75.model.front.mid_edge_normals import RULES, mid_edge_normals
-from phong75.model.front.scene import Scene
+from phong75.model.front.scene import WHITE, Light, Scene
 from phong75.model.front.visibility import GRID, Segments, Triangles
 from phong75.model.spans import bent_beyond
 
@@ -110,6 +113,11 @@ def make_frame(
             f"{scene.name}: interpolation = {scene.interpolation} is for normals, which the spans "
             f"of {config.name} do not carry"
         )
+    if scene.interpolation in RULES and len(scene.lights) > 1:
+        raise InputError(
+            f"{scene.name}: interpolation = {scene.interpolation} is for one light, "
+            f"there are {len(scene.lights)}"
+        )
     if scene.interpolation == "quadratic_exact":
         for item in scene.objects:
             if item.mesh.surface is None:
@@ -117,10 +125,11 @@ def make_frame(
                     f"{scene.name}: interpolation = quadratic_exact needs the surface behind "
                     f"{item.name}, which is not known; quadratic does without"
                 )
-    if config.channels == 1 and any(len(set(m.color)) > 1 for m in scene.materials):
+    if config.channels == 1 and _coloured(scene):
         raise InputError(f"{scene.name}: has colours, but the pipeline is built for grey")
     frame_axes, eye = light_frame(scene.light, scene.camera.axes[2])
     frame, exact = _frame(scene, eye, config)
+    _add_lights(scene, frame_axes, frame, exact, config)
     triangles = _triangles(scene, frame_axes, frame, exact, config, shade_vertices)
 
     parts = []
@@ -134,6 +143,11 @@ def make_frame(
             np.concatenate, zip(*parts, strict=True)
         )
         frame.spans["last"][-1] = True
+    if config.technique != "phong":  # the intensities hold all lights
+        frame.further, exact.further = [], []
+    for light, real in zip(frame.further, exact.further, strict=True):
+        start, step = exact.start @ real.turn.T, exact.step @ real.turn.T
+        light.start, light.step = encode(start, step, frame.spans["length"], config)
     meshes = [o.mesh for o in scene.objects]
     return FrontEnd(
         frame, exact, sum(len(m.faces) for m in meshes), sum(m.degenerate for m in meshes)
@@ -145,7 +159,8 @@ def _frame(scene: Scene, eye: Reals, config: Config) -> tuple[Frame, ExactFrame]
 
     eye: float64[3], unit vector to the eye in the light frame.
     """
-    table, cp, d, weight, exponent = _materials(scene, config)
+    table, ambient, weight, exponent = _materials(scene, config)
+    diffuse, highlight = _colours(scene, scene.lights[0], table, config)
     background = np.floor(np.asarray(scene.background) * (2**config.colour_bits - 1) + 0.5)
     frame = Frame(
         scene.width,
@@ -157,7 +172,39 @@ def _frame(scene: Scene, eye: Reals, config: Config) -> tuple[Frame, ExactFrame]
         np.zeros(0, SPAN_DTYPE),
     )
     no_rows = np.zeros((0, 3))
-    return frame, ExactFrame(no_rows, no_rows, no_rows, eye, cp, d, weight, exponent)
+    return frame, ExactFrame(
+        no_rows, no_rows, no_rows, eye, ambient, diffuse, highlight, weight, exponent
+    )
+
+
+def _coloured(scene: Scene) -> bool:
+    """Whether red, green and blue may differ: in a material or a light of `scene`."""
+    colours = [scene.ambient]
+    for m in scene.materials:
+        colours += [tuple(m.ka), tuple(m.kd), tuple(m.ks), m.emission]
+    for light in scene.lights:
+        colours += [light.ambient, light.diffuse, light.specular]
+    return any(len(set(colour)) > 1 for colour in colours)
+
+
+def _add_lights(
+    scene: Scene, frame_axes: Reals, frame: Frame, exact: ExactFrame, config: Config
+) -> None:
+    """Add the lights of `scene` beside the first, without spans, to `frame` and `exact`.
+
+    frame_axes: float64[3, 3], rows are the axes of the first light's frame in world coordinates.
+    """
+    for light in scene.lights[1:]:
+        axes, eye = light_frame(light.direction, scene.camera.axes[2])
+        table = MaterialTable.empty(config)
+        diffuse, highlight = _colours(scene, light, table, config)
+        codes = table.highlight
+        if codes is None:
+            codes = np.full_like(table.diffuse, config.coefficient.one)
+        none = np.zeros((0, 3), np.int64)
+        half_vector = half_vector_codes(eye, config)
+        frame.further.append(FurtherLight(half_vector, none, none, table.diffuse, codes))
+        exact.further.append(ExactLight(axes @ frame_axes.T, eye, diffuse, highlight))
 
 
 def _triangles(
@@ -378,16 +425,61 @@ def encode(start: Reals, step: Reals, length: ArrayLike, config: Config) -> tupl
     return first, np.clip(slope, lowest, (config.normal.max - first) // steps)
 
 
-def _materials(scene: Scene, config: Config) -> tuple[MaterialTable, Reals, Reals, Reals, Reals]:
-    """The material table in codes, and Cp, d, W and n of all its rows before rounding (shapes as
-    in `ExactFrame`)."""
+def _materials(scene: Scene, config: Config) -> tuple[MaterialTable, Reals, Reals, Reals]:
+    """The material table in codes without colours of the lights, and the ambient part, W and n of
+    all its rows before rounding (shapes as in `ExactFrame`).
+
+    Raises InputError if an ambient part does not fit its word.
+    """
     table = MaterialTable.empty(config)
-    cp, d = np.zeros((config.materials, 3)), np.zeros(config.materials)
+    ambient = np.zeros((config.materials, 3))
     weight = np.zeros((config.materials, config.weight_points))
     exponent = np.ones(config.materials)
     zn = np.linspace(0.0, 1.0, config.weight_points)
     for i, material in enumerate(scene.materials):
-        cp[i], d[i], exponent[i] = material.color, material.d, material.n
-        weight[i] = material.weight(zn)
-        table.set(i, cp[i], d[i], weight[i], exponent[i], config)
-    return table, cp, d, weight, exponent
+        light = np.sum([scene.ambient, *(light.ambient for light in scene.lights)], axis=0)
+        ambient[i] = material.emission + material.ka * light
+        weight[i], exponent[i] = material.weight(zn), material.n
+        table.ambient[i] = _coefficients(
+            ambient[i], f"ambient light of material {i}", scene, config
+        )
+        table.weight[i] = config.coefficient.quantize(weight[i])
+        table.exponent[i] = config.exponent.quantize(material.n)
+    return table, ambient, weight, exponent
+
+
+def _colours(
+    scene: Scene, light: Light, table: MaterialTable, config: Config
+) -> tuple[Reals, Reals]:
+    """Set `diffuse` and `highlight` of `table` to kd Ld and ks Ls of `light`; returns both before
+    rounding, float64[M, 3] each. A `highlight` of 1 everywhere stays None.
+
+    By the paper's rule Cp d and Cp (1 - d) are rounded so that their sum is Cp in codes. Raises
+    InputError if a product does not fit its word.
+    """
+    diffuse, highlight = np.zeros((config.materials, 3)), np.ones((config.materials, 3))
+    codes = np.full((config.materials, 3), config.coefficient.one)
+    for i, material in enumerate(scene.materials):
+        what = f"of light `{light.name}` on material {i}"
+        diffuse[i] = material.kd * light.diffuse
+        highlight[i] = material.ks * light.specular
+        codes[i] = _coefficients(highlight[i], f"highlight {what}", scene, config)
+        if material.diffuse is None and light.diffuse == WHITE:
+            cp = np.asarray(material.color)
+            table.diffuse[i] = config.coefficient.quantize(cp)
+            table.diffuse[i] -= config.coefficient.quantize(cp * material.d)
+        else:
+            table.diffuse[i] = _coefficients(diffuse[i], f"diffuse light {what}", scene, config)
+    if (codes != config.coefficient.one).any():
+        table.highlight = codes
+    return diffuse, highlight
+
+
+def _coefficients(values: Reals, what: str, scene: Scene, config: Config) -> Ints:
+    """`values` (float64[3]) in `coefficient`. Raises InputError if one is beyond the word; what:
+    names them in the message."""
+    codes = np.floor(np.ldexp(values, config.coefficient.fraction) + 0.5).astype(np.int64)
+    if not config.coefficient.contains(codes).all():
+        most = config.coefficient.real(config.coefficient.max)
+        raise InputError(f"{scene.name}: {what}: {max(values):g} is above {most:g}")
+    return codes

@@ -38,12 +38,12 @@ class Point:
 
 
 def of_width(bits: int, name: str = "", **changes: Any) -> Config:
-    """The configuration with words of `bits` bits, 10 to 18; 18 gives the default formats.
+    """The configuration with words of `bits` bits, 10 to 22; 18 gives the default formats.
 
-    Every word loses 18 - bits fraction bits. Tables of lines lose one index bit per two bits of
-    width, because the error of a line falls with the square of its length. n keeps its format: the
-    exponent is a parameter, not a signal. name: of the configuration, by default width_<bits>.
-    changes: further fields of `Config`.
+    Every word loses 18 - bits fraction bits, or gains bits - 18. Tables of lines lose one index bit
+    per two bits of width, because the error of a line falls with the square of its length. n keeps
+    its format: the exponent is a parameter, not a signal. name: of the configuration, by default
+    width_<bits>. changes: further fields of `Config`.
     """
     drop = MULTIPLIER_BITS - bits
     half = drop // 2

@@ -45,9 +45,9 @@ def _along(frame: Frame, exact: ExactFrame, span: Ints, k: ArrayLike, technique:
     value = exact.start[span] + k * exact.step[span] + k * (k - 1) / 2 * exact.bend[span]
     if tessellation.SHADED[technique].technique != "phong":
         return 255 * np.clip(value, 0, 1)
-    m, d = frame.spans["material"][span], exact.d[:, None]
+    m = frame.spans["material"][span]
     return reference.shade(
-        value, (exact.cp * d)[m], (exact.cp * (1 - d))[m], exact.weight[m], exact.exponent[m],
+        value, exact.ambient[m], exact.diffuse[m], exact.weight[m], exact.exponent[m],
         exact.eye, frame.two_sided,
     )  # fmt: skip
 

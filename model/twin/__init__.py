@@ -16,6 +16,9 @@ from phong75.model.twin.phong_pipeline import Pixels, render, zero_normals
 NO_TWIN = {
     "pixel_fifo": "passes every pixel on unchanged and in order, however the sink stalls",
     "delay": "gives the word unchanged, CYCLES cycles later",
+    "light_turns": "takes the records of a span and orders the turns of a pixel's lights",
+    "turn_hold": "keeps the word of a pixel's first turn for its other turns",
+    "lut_ram": "gives the word last written to the address: a light's interpolated state",
     "rom": "gives the word at the address: `np.take` of a table of `phong75.model.tables`",
     "ram": "gives the word last written to the address: an index into the material table",
     "small_ram": "gives the word last written to the address: an index into the material table",

@@ -10,10 +10,11 @@ import numpy as np
 
 from phong75.model.arrays import Flags, Ints
 from phong75.model.config import DEFAULT, Config
-from phong75.model.frame import Frame
+from phong75.model.frame import Frame, with_lights
 from phong75.model.twin.core.normalizer import zero
 from phong75.model.twin.core.phong_unit import interpolate, phong_unit
 from phong75.model.twin.core.span_walker import pixel_count, walk
+from phong75.model.twin.lights import lights_unit
 from phong75.model.twin.methods.quadratic_unit import quadratic_unit
 from phong75.model.twin.techniques.flat_unit import flat_unit
 from phong75.model.twin.techniques.gouraud_unit import gouraud_unit
@@ -46,6 +47,8 @@ def colours(frame: Frame, span: Ints, k: Ints, config: Config) -> Ints:
         return gouraud_unit(frame.spans, span, k, config)
     if config.technique == "flat":
         return flat_unit(frame.spans, span, config)
+    if config.sums_lights:
+        return lights_unit.lights_unit(frame, span, k, config)
     if config.spans_carry_squares:
         return quadratic_unit(frame, span, k, config)
     return phong_unit(frame, span, k, config)
@@ -56,9 +59,12 @@ def render(
 ) -> Pixels:
     """All pixels of `frame`, bit for bit as the RTL of `config` gives them.
 
-    progress: called with the part done, 0 to 1, as the work goes on. Pixels of illegal spans are
-    covered; pixels of spans that `config` leaves out (see `pruning.span_guard`) are not.
+    A `config` for one white light gets the lights of the frame (see `frame.fitted`). progress:
+    called with the part done, 0 to 1, as the work goes on. Pixels of illegal spans are covered;
+    pixels of spans that `config` leaves out (see `pruning.span_guard`) are not. Raises InputError
+    if `config` cannot have the frame's lights.
     """
+    config = with_lights(config, frame)
     total = pixel_count(frame.spans)
     x, y = np.empty(total, np.int64), np.empty(total, np.int64)
     rgb, last = np.empty((total, 3), np.int64), np.empty(total, bool)
@@ -71,7 +77,8 @@ def render(
 
 
 def zero_normals(frame: Frame, config: Config = DEFAULT) -> int:
-    """How many pixels of `frame` have the zero vector for a normal: the RTL flags each of them.
+    """How many pixels of `frame` have the zero vector for a normal (that of the first light): the
+    RTL flags each of them.
 
     0 where the hardware of `config` does not look for the zero vector: where it normalizes nothing,
     and where `constant_shift` makes `span_guard` flag such a span.

@@ -6,7 +6,7 @@
 `include "phong_config.vh"
 
 module frame_bench #(
-    parameter ADDRESS_BITS = 1 + `PHONG_MATERIAL_BITS + `PHONG_WEIGHT_INDEX_BITS,
+    parameter ADDRESS_BITS = `PHONG_ADDRESS_BITS,
     parameter WORD_BITS    = 2 * `PHONG_COEFFICIENT_BITS + 1,
     parameter SPAN_BITS    = `PHONG_SPAN_BITS,
     parameter PIXEL_BITS   = 2 * `PHONG_COORDINATE_BITS + 3 * `PHONG_COLOUR_BITS,

@@ -17,7 +17,7 @@ import numpy as np
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import Frame
 from phong75.model.registers import writes
-from phong75.model.spans import write_spans
+from phong75.model.spans import turns, write_spans
 from phong75.model.twin import Pixels
 from phong75.sim import environment
 from phong75.sim.build import Bench, silent
@@ -125,7 +125,8 @@ def simulate_jobs(
             else:
                 path.symlink_to(job.spans_path.resolve())
             descriptions.append({
-                "job": k, "skip": body_offset(path), "spans": len(job.frame.spans),
+                "job": k, "skip": body_offset(path),
+                "spans": len(job.frame.spans) * turns(job.frame, config),
                 "pixels": int(np.maximum(job.frame.spans["length"], 1).sum()),
                 "idle": job.idle, "stall": job.stall, "seed": job.seed,
                 "stop_after": job.stop_after, "reset_first": job.reset_first,

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: MIT
+"""Twin of rtl/lights/light_map.v: what the write port holds beside `register_map`, for lights.
+
+`phong75.model.registers` gives the address map: the number of a light stands above the address that
+`register_map` decodes.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from phong75.model.config import Config
+from phong75.model.twin.core.register_map import register_map
+
+#: Fields that each light has for itself.
+OF_A_LIGHT = ("diffuse", "highlight", "half_x", "half_z")
+
+
+class LightDestination(NamedTuple):
+    """Where a write goes: the number of the `light`, 0 for fields that all lights share; the field
+    `name`, `material` and `entry` as of `register_map`."""
+
+    light: int
+    name: str
+    material: int
+    entry: int
+
+
+def light_map(address: int, config: Config) -> LightDestination:
+    """Decode `address` of the write port."""
+    below = 1 + config.material_bits + config.weight_index_bits
+    to = register_map(address & ((1 << below) - 1), config)
+    light = address >> below if to.name in OF_A_LIGHT else 0
+    return LightDestination(light, *to)
+
+
+def unsupported_light_write(address: int, word: int, built: Config) -> bool:
+    """Whether `light_map` of `built` flags a write of `word` to `address`: it names a light that is
+    not built, asks for more lights than are built, or for a coloured highlight that is left out."""
+    to = light_map(address, built)
+    if to.light >= built.lights:
+        return True
+    if to.name == "control":
+        return built.lights > 1 and (word >> 1 & 7) >= built.lights
+    if to.name == "highlight" and built.specular:
+        code = word & built.coefficient.max
+        left_out = not built.highlight_colour and code != built.coefficient.one
+        return left_out or (to.entry > 0 and built.channels < 3)
+    return False

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+// light_highlight: W(i) cos(s)^n of one light; rounded to a word if it is to be coloured.
+// Latency: LATENCY cycles (PHONG_LIGHT_HIGHLIGHT_LATENCY in latency.vh).
+// Throughput: one result per cycle.
+// Reset: none; the table is undefined until written.
+`default_nettype none
+`include "phong_config.vh"
+`include "latency.vh"
+
+module light_highlight (
+    input wire clk,
+
+    // write port of W(i), from register_map
+    input wire                                                     write_weight,
+    input wire [`PHONG_MATERIAL_BITS+`PHONG_WEIGHT_INDEX_BITS-1:0] write_address,
+    input wire [2*`PHONG_COEFFICIENT_BITS:0]                       write_word,
+
+    // unit normal and half vector, in the frame of the light
+    input wire [`PHONG_HALF_VECTOR_BITS-1:0] half_x,  // s0.17, half vector, x
+    input wire [`PHONG_HALF_VECTOR_BITS-1:0] half_z,  // s0.17, z
+    input wire [`PHONG_UNIT_BITS-1:0]        unit_x,  // s0.17, unit normal, x
+    input wire [`PHONG_UNIT_BITS-1:0]        unit_y,  // s0.17, y
+    input wire [`PHONG_UNIT_BITS-1:0]        unit_z,  // s0.17, z
+    input wire [`PHONG_COSINE_BITS-1:0]      cosine,  // u0.18, cos(i)
+
+    input wire [`PHONG_MATERIAL_BITS-1:0] material,  // index
+
+    // PHONG_HIGHLIGHT_LATENCY + PHONG_EXPONENT_LATENCY cycles later
+    input wire [`PHONG_EXPONENT_BITS-1:0] exponent,  // u8.9, n
+
+    // LATENCY cycles later: u0.18 if HIGHLIGHT_COLOUR, else the whole product, u1.35
+    output wire [(`PHONG_HIGHLIGHT_COLOUR ? `PHONG_HIGHLIGHT_BITS
+                  : `PHONG_WEIGHT_BITS + `PHONG_POWER_BITS)-1:0] highlight
+);
+
+  localparam COSINE_BITS          = `PHONG_COSINE_BITS;
+  localparam MATERIAL_BITS        = `PHONG_MATERIAL_BITS;
+  localparam INDEX_BITS           = `PHONG_WEIGHT_INDEX_BITS;
+  localparam COEFFICIENT_BITS     = `PHONG_COEFFICIENT_BITS;
+  localparam COEFFICIENT_FRACTION = `PHONG_COEFFICIENT_FRACTION;
+  localparam VERSINE_BITS         = `PHONG_VERSINE_BITS;
+  localparam POWER_BITS           = `PHONG_POWER_BITS;
+  localparam POWER_FRACTION       = `PHONG_POWER_FRACTION;
+  localparam WEIGHT_BITS          = `PHONG_WEIGHT_BITS;
+  localparam WEIGHT_FRACTION      = `PHONG_WEIGHT_FRACTION;
+  localparam HIGHLIGHT_BITS       = `PHONG_HIGHLIGHT_BITS;
+  localparam HIGHLIGHT_FRACTION   = `PHONG_HIGHLIGHT_FRACTION;
+  localparam HIGHLIGHT_COLOUR     = `PHONG_HIGHLIGHT_COLOUR;
+  localparam POWER_FUNCTION       = `PHONG_POWER_FUNCTION;   // 0: n is always 1
+  localparam WEIGHT_FUNCTION      = `PHONG_WEIGHT_FUNCTION;  // 0: W does not depend on i
+  localparam LATENCY              = `PHONG_LIGHT_HIGHLIGHT_LATENCY;
+
+  // Cycles from the input to the use of W(i) and cos(s)^n, and to the look-up of W.
+  localparam POWER_AT = `PHONG_HIGHLIGHT_LATENCY + `PHONG_POWER_LATENCY;
+  localparam WEIGHT_AT = POWER_AT - (WEIGHT_FUNCTION ? `PHONG_SPECULAR_WEIGHT_LATENCY
+                                                     : `PHONG_SMALL_RAM_LATENCY);
+  localparam PRODUCT_BITS = WEIGHT_BITS + POWER_BITS;
+
+  // ---- cos(s)^n ----
+  wire [VERSINE_BITS-1:0] versine;  // u0.22, 1 - cos(s)
+  wire [POWER_BITS-1:0] power;      // u0.18
+
+  reflection u_reflection (
+      .clk(clk),
+      .half_x(half_x),
+      .half_z(half_z),
+      .unit_x(unit_x),
+      .unit_y(unit_y),
+      .unit_z(unit_z),
+      .versine(versine)
+  );
+
+  generate
+    if (POWER_FUNCTION) begin : gen_power
+      specular_power u_specular_power (
+          .clk(clk),
+          .versine(versine),
+          .exponent(exponent),
+          .power(power)
+      );
+    end else begin : gen_cosine
+      specular_cosine u_specular_cosine (
+          .clk(clk),
+          .versine(versine),
+          .cosine(power)
+      );
+
+      wire unused = &{1'b0, exponent};
+    end
+  endgenerate
+
+  // ---- W(i) ----
+  wire [WEIGHT_BITS-1:0] weight;  // u1.17
+  wire [MATERIAL_BITS-1:0] material_weight;
+  wire [COSINE_BITS-1:0] cosine_weight;
+
+  delay #(
+      .BITS  (MATERIAL_BITS + COSINE_BITS),
+      .CYCLES(WEIGHT_AT)
+  ) u_weight_at (
+      .clk(clk),
+      .in ({material, cosine}),
+      .out({material_weight, cosine_weight})
+  );
+
+  generate
+    if (WEIGHT_FUNCTION) begin : gen_weight
+      specular_weight u_specular_weight (
+          .clk(clk),
+          .write_enable(write_weight),
+          .write_address(write_address),
+          .write_word(write_word),
+          .material(material_weight),
+          .cosine(cosine_weight),
+          .weight(weight)
+      );
+    end else begin : gen_material_weight  // the left point of interval 0
+      wire [COEFFICIENT_BITS-1:0] left;
+
+      small_ram #(
+          .ADDRESS_BITS(MATERIAL_BITS),
+          .WORD_BITS(COEFFICIENT_BITS)
+      ) u_weight_table (
+          .clk(clk),
+          .write_enable(write_weight),
+          .write_address(write_address[INDEX_BITS+:MATERIAL_BITS]),
+          .write_word(write_word[COEFFICIENT_BITS-1:0]),
+          .address(material_weight),
+          .word(left)
+      );
+
+      assign weight = {left, {WEIGHT_FRACTION - COEFFICIENT_FRACTION{1'b0}}};
+
+      wire unused = &{1'b0, cosine_weight, write_address, write_word};
+    end
+  endgenerate
+
+  wire [PRODUCT_BITS-1:0] product;  // u1.35
+
+  multiplier #(
+      .A_BITS  (WEIGHT_BITS),
+      .B_BITS  (POWER_BITS),
+      .A_SIGNED(0),
+      .B_SIGNED(0)
+  ) u_product (
+      .clk(clk),
+      .a(weight),
+      .b(power),
+      .product(product)
+  );
+
+  // ---- round_highlight ----
+  generate
+    if (HIGHLIGHT_COLOUR) begin : gen_round
+      round_saturate #(
+          .IN_BITS  (PRODUCT_BITS),
+          .DROP     (WEIGHT_FRACTION + POWER_FRACTION - HIGHLIGHT_FRACTION),
+          .OUT_BITS (HIGHLIGHT_BITS),
+          .IS_SIGNED(0)
+      ) u_highlight (
+          .clk(clk),
+          .in (product),
+          .out(highlight)
+      );
+    end else begin : gen_whole
+      assign highlight = product;
+    end
+  endgenerate
+
+endmodule
+
+`default_nettype wire
