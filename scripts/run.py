@@ -251,9 +251,8 @@ def run(request: RunRequest, simulate: Simulate, steps: Steps) -> dict:
         text = json.dumps(report, indent=2, allow_nan=False) + "\n"
         (folder / "report.json").write_text(text, encoding="utf-8")
         if stimulus.full != request.config:
-            console.note(
-                f"the scene needs more than {request.config.name} has: {stimulus.full.name} is built"
-            )
+            name = request.config.name
+            console.note(f"the scene needs more than {name} has: {stimulus.full.name} is built")
         _explain(stimulus, comparison)
     return report
 

@@ -78,6 +78,7 @@ module lights_unit #(
 
   localparam ADDRESS_BITS = MATERIAL_BITS + INDEX_BITS;
   localparam SHIFT_BITS   = $clog2(NORMAL_BITS);
+  localparam BEND_BITS    = NORMAL_BITS + `PHONG_BEND_FRACTION_BITS;
   localparam TERM_BITS    = `PHONG_WEIGHT_FRACTION + `PHONG_POWER_FRACTION + 2;
 
   // Cycles from the interpolators to the hold of the first light's shift and to the unit normals.
@@ -144,6 +145,9 @@ module lights_unit #(
       .step_x({NORMAL_BITS{1'b0}}),
       .step_y({NORMAL_BITS{1'b0}}),
       .step_z({NORMAL_BITS{1'b0}}),
+      .bend_x({BEND_BITS{1'b0}}),
+      .bend_y({BEND_BITS{1'b0}}),
+      .bend_z({BEND_BITS{1'b0}}),
       .length(length),
       .material(material),
       .pixel_valid(pixel_valid),
