@@ -170,7 +170,8 @@ class Frame:
 
 def fitted(config: Config, frame: Frame, units: int = 1) -> Config:
     """`config` with what `frame` needs beyond it: second differences where a span has a bend; the
-    lights that `frame` has. As it is for linear normals, one white light and Cp <= 1.
+    lights that `frame` has, also where terms of one white light add up to 4 or more. As it is for
+    linear normals, one white light and Cp <= 1.
 
     units: shading units side by side. Raises InputError if there are more units than lights, or if
     `config` has a method or a feature that is for one light.
@@ -180,7 +181,9 @@ def fitted(config: Config, frame: Frame, units: int = 1) -> Config:
     table = frame.materials
     colours = [table.highlight, *(light.highlight for light in frame.further)]
     coloured = any(c is not None and (c != config.coefficient.one).any() for c in colours)
-    beyond = (table.ambient + table.diffuse > config.coefficient.one).any()
+    # The sum of a build for one white light has two integer bits.
+    largest = table.ambient + table.diffuse + table.weight.max(axis=1)[:, None]
+    beyond = (largest >= 4 * config.coefficient.one).any()
     if config.technique != "phong":
         if units > 1:
             raise InputError(f"{config.technique} shading has no units: it shades vertices")

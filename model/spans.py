@@ -340,6 +340,8 @@ def _column(spans: Spans, name: str, values: list[tuple[Ints, Ints]]) -> tuple[A
     axis, _, unit = rest.partition("_")
     if not axis:
         return spans[what], False
+    if what == "bend":
+        return spans[what][:, "xyz".index(axis)], True
     return values[int(unit or 0)][what == "step"][:, "xyz".index(axis)], True
 
 
