@@ -47,7 +47,8 @@ class MaterialTable:
 
     With lights (`Config.sums_lights`) ambient is the sum of what needs no direction, e + ka Ia and
     ka La of every light; diffuse is kd Ld of the first light, and highlight: int64[M, 3] is ks Ls
-    of the first light in `coefficient`. highlight is None where it is 1 everywhere.
+    of the first light in `coefficient`. highlight is None where it is 1 everywhere and
+    ambient + diffuse is at most 1: then one light needs no more than eq. (3).
     """
 
     ambient: Ints
@@ -169,35 +170,34 @@ class Frame:
 
 
 def fitted(config: Config, frame: Frame, units: int = 1) -> Config:
-    """`config` with what `frame` needs beyond it: second differences where a span has a bend; the
-    lights that `frame` has, also where terms of one white light add up to 4 or more. As it is for
-    linear normals, one white light and Cp <= 1.
+    """`config` with what `frame` needs beyond it: second differences where a span has a bend, and
+    the lights of `frame`. As it is for linear normals and one light with white highlights.
 
     units: shading units side by side. Raises InputError if there are more units than lights, or if
     `config` has a method or a feature that is for one light.
     """
     if config.normal_order == 1 and frame.spans["bend"].any():
         config = replace(config, name=f"{config.name}_quadratic", normal_order=2)
-    table = frame.materials
-    colours = [table.highlight, *(light.highlight for light in frame.further)]
+    first = frame.materials.highlight
+    colours = [first, *(light.highlight for light in frame.further)]
     coloured = any(c is not None and (c != config.coefficient.one).any() for c in colours)
-    # The sum of a build for one white light has two integer bits.
-    largest = table.ambient + table.diffuse + table.weight.max(axis=1)[:, None]
-    beyond = (largest >= 4 * config.coefficient.one).any()
     if config.technique != "phong":
         if units > 1:
             raise InputError(f"{config.technique} shading has no units: it shades vertices")
         return config
-    if not (coloured or beyond or frame.further or units > 1):
+    if first is None and not frame.further and units == 1:
         return config
+    if units > frame.lights:
+        lights = f"{frame.lights} light{'s' if frame.further else ''}"
+        raise InputError(f"{units} units for {lights}: a unit more than lights has nothing to do")
     suffix = f"_lights_{frame.lights}" + (f"_units_{units}" if units > 1 else "")
     try:
         return replace(
             config, name=config.name + suffix, lights=frame.lights, units=units,
-            highlight_colour=bool(coloured or (beyond and not frame.further)),
+            highlight_colour=coloured or not frame.further,
         )  # fmt: skip
     except ValueError as error:
-        raise InputError(f"{error}; lights of the frame: {frame.lights}") from None
+        raise InputError(f"a sum over lights is needed, but {error}") from None
 
 
 def with_lights(config: Config, frame: Frame) -> Config:

@@ -41,7 +41,7 @@ FILES = ("frame.png", "reference.png", "error.png", "spans", "report.json")
 @dataclass(frozen=True)
 class RunRequest:
     """What to run: a scene (`size` None for its own) or, where `spans` is set, a span file,
-    with the hardware of `config`.
+    with the hardware of `config`, and the lights that it has on `units` shading units.
 
     prune: "" for the full design, "self" for what is pruned to this scene, else the name or path
     of a scene: what is pruned to that one at the same size. clock_hz in hertz; fps in frames a
@@ -56,12 +56,13 @@ class RunRequest:
     clock_hz: float
     out: Path
     prune: str = ""
+    units: int = 1
 
 
 def request(
     scene: str = "teapot", spans: Path | None = None, size: tuple[int, int] | None = None,
     config: Config = DEFAULT, fps: float = 30, clock_mhz: float = 200, prune: str = "",
-    out: Path | None = None,
+    out: Path | None = None, units: int = 1,
 ) -> RunRequest:  # fmt: skip
     """The request with its defaults: results go to build/<scene>-<configuration>."""
     suffix = "" if config == DEFAULT else f"-{config.name}"
@@ -74,12 +75,14 @@ def request(
         clock_hz=options.whole(clock_mhz * 1e6),
         out=out or Path("build", Path(spans or scene).stem + suffix),
         prune=options.prune_scene(prune),
+        units=units,
     )
 
 
 @dataclass(frozen=True)
 class Stimulus:
-    """What the front end leaves: the frame, its file, and the configuration to build for it.
+    """What the front end leaves: the frame, its file, the full configuration with the lights of the
+    frame, and the configuration to build for it.
 
     exact: the scene before any rounding; None where there is no scene behind the spans. full: the
     configuration of the request, with what the frame needs beyond it; built: what is left of it
@@ -112,14 +115,15 @@ def _front_end(request: RunRequest, folder: Path, steps: Steps) -> Stimulus:
     config = request.config
     with steps.step("front_end") as step:
         if request.spans:
-            frame, exact, degenerate = spans.read_spans(request.spans, config), None, 0
+            written_for = spans.written_for(request.spans, config)
+            frame, exact, degenerate = spans.read_spans(request.spans, written_for), None, 0
         else:
             scene = load_scene(request.scene, request.size, config)
             for remark in scene.remarks:
                 console.note(remark)
             front = front_end(scene, config, step.done)
             frame, exact, degenerate = front.frame, front.exact, front.degenerate_triangles
-        config = fitted(config, frame)
+        config = fitted(config, frame, request.units)
         built = _built(request, frame, config)
         if built.values != config.values and (reasons := pruning.missing(frame, built, config)):
             raise InputError(f"its spans have no place for this scene: {reasons[0]}")
@@ -129,12 +133,17 @@ def _front_end(request: RunRequest, folder: Path, steps: Steps) -> Stimulus:
 
 
 def _built(request: RunRequest, frame: Frame, config: Config) -> Config:
-    """The part of `config` to build for `request`, whose frame is `frame`."""
+    """The part of `config` to build for `request`, whose frame is `frame`.
+
+    Raises InputError if the scene to prune for has other lights than `frame`.
+    """
     if not request.prune:
         return config
     if request.prune != options.SELF:
         scene = load_scene(request.prune, (frame.width, frame.height), config)
         frame = front_end(scene, config).frame
+        if not config.sums_lights and fitted(config, frame) != config:
+            raise InputError(f"--prune {request.prune}: it has other lights than what is run")
     return pruning.prune(frame, config)[0]
 
 
@@ -266,7 +275,11 @@ def _explain(stimulus: Stimulus, comparison: metrics.Comparison) -> None:
         console.note(_where(comparison.first))
         # `locate` knows the stages of these, with normals of either order.
         linear = replace(config, name=config.technique, normal_order=1)
-        by_technique = config in TECHNIQUES.values() or linear == replace(DEFAULT, name="phong")
+        by_technique = (
+            config in TECHNIQUES.values()
+            or config.sums_lights
+            or linear == replace(DEFAULT, name="phong")
+        )
         if comparison.first.expected and stimulus.built == config and by_technique:
             console.note(locate(stimulus.frame, comparison.first.index, config))
 
