@@ -375,6 +375,31 @@ def surfaces(record: dict[str, Any]) -> str:
     return markdown(header, rows, left=2)
 
 
+def quadratic_normals(record: dict[str, Any]) -> str:
+    """What each rule of mid-edge normals gains on the torus, and how it converges."""
+    names = {
+        "gouraud": "Gouraud's shading", "phong": "linear normals",
+        "quadratic_vlachos": "`quadratic_vlachos`", "quadratic": "`quadratic`",
+        "quadratic_exact": "`quadratic_exact`",
+    }  # fmt: skip
+    torus = _by_shape(record["meshes"])["torus"]
+    jumps = record["mach_bands"]["torus"]["16"]
+    rows = [
+        (
+            name, number(torus[method]["method_rms_lsb"], 2),
+            number(torus[method]["facing_rms_lsb"], 2),
+            ", ".join(number(by[method]["facing_rms"], 1) for by in record["orders"].values()),
+            number(jumps[method]["slope_mean"], 2),
+        )
+        for method, name in names.items()
+    ]  # fmt: skip
+    header = ("normals", f"torus of {torus['phong']['triangles']} triangles, RMS error, LSB",
+              "the same within 60° of the eye",
+              f"order of convergence: {', '.join(record['orders'])}",
+              "torus of 16 steps: jump of the slope at edges, LSB per pixel")  # fmt: skip
+    return markdown(header, rows)
+
+
 def _by_shape(meshes: Iterable[dict[str, Any]]) -> dict[str, dict[str, dict[str, Any]]]:
     found: dict[str, dict[str, dict[str, Any]]] = {}
     for row in meshes:
