@@ -13,6 +13,9 @@ from phong75.model.config import DEFAULT, TECHNIQUES, Config
 from phong75.model.frame import InputError
 from phong75.model.studies import methods
 
+#: Configurations of which `phong75 synth --record` keeps the figures, beside the default one.
+MORE = "with more built in"
+
 
 def plain(name: str) -> str:
     """A name as it is typed: `diffuse grey` of a table is diffuse_grey."""
@@ -27,7 +30,7 @@ def _groups() -> dict[str, dict[str, Config]]:
         "the full pipeline": {DEFAULT.name: DEFAULT},
         "older techniques": older,
         "with less built in": {n: c for n, c in by_hand.items() if n not in older},
-        "with more built in": {
+        MORE: {
             "hold_unlit": dataclasses.replace(DEFAULT, name="hold_unlit", hold_unlit=True),
             "quadratic_normals": dataclasses.replace(
                 DEFAULT, name="quadratic_normals", normal_order=2

@@ -7,6 +7,7 @@ Exit code: 0; 2 if the input is wrong or a tool failed, with one line on stderr 
 from __future__ import annotations
 
 import dataclasses
+import datetime
 from pathlib import Path
 
 from rich.table import Table
@@ -17,8 +18,12 @@ from phong75.model.frame import InputError, fitted
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
 from phong75.scripts import console, recorded
+from phong75.scripts.configurations import GROUPS, MORE
 from phong75.scripts.console import Steps
 from phong75.scripts.synthesis import ecp5
+
+#: The record of configurations with more built in than the default one.
+RECORD_OF_MORE = "synth-more"
 
 
 def pruned(config: Config, scene: str) -> Config:
@@ -77,17 +82,31 @@ def effort(report: dict) -> dict[str, int]:
     return {"seeds": len(report["seeds"]), "gates": int("gates" in report)}
 
 
+def _record_more(report: dict) -> None:
+    """Record the figures of `report`, of a configuration with more built in, beside others."""
+    name, effort_now = report["config"], {"seeds": len(report["seeds"])}
+    kept = recorded.figures(RECORD_OF_MORE).get("configurations", {})
+    own = {"date": datetime.date.today().isoformat(), "commit": recorded.commit()}
+    recorded.record(
+        RECORD_OF_MORE, "make synth CONFIG=NAME", tuple(report["tools"]),
+        {"configurations": kept | {name: figures(report) | own}}, effort_now,
+    )  # fmt: skip
+
+
 def main(config: Config, grade: int, seeds: int, count_gates: bool, record: bool) -> int:
     """Synthesize and route `config` with seeds 1 to `seeds`; returns the exit code.
 
     Raises InputError, SynthesisError.
     """
     recorded.check(record)
+    more = GROUPS[MORE].get(config.name) == config and grade == 6
     if count_gates and not ecp5.LIBERTY.is_file():
         raise InputError("--gates needs a library of cells: apt-get install qflow-tech-osu018")
     report = ecp5.run(config, grade, tuple(range(1, seeds + 1)), count_gates, Steps().step)
     console.show(table(report))
-    if record:
+    if record and more:
+        _record_more(report)
+    elif record:
         recorded.record(
             f"synth-grade{grade}",
             "make synth" + (f" GRADE={grade}" if grade != 6 else ""),

@@ -6,7 +6,8 @@ linear interpolation leans to that side all along. The normal in the middle of e
 is missing (van Overveld and Wyvill 1997, Vlachos et al. 2001). `RULES` names three ways to it:
 
 - "quadratic_vlachos": from both ends of the edge alone. The mean of the normals is reflected across
-  the plane at right angles to the edge (Vlachos et al. 2001, section 3.2).
+  the plane at right angles to the edge (Vlachos et al. 2001). There the result is a coefficient of
+  the polynomial; here it is the value in the middle of the edge. The errors are alike.
 - "quadratic": from the normals around both ends. A curvature at each end gives the change of the
   normal along the edge. The normal in the middle is that of the cubic through both ends. It is then
   taken where the eye sees the surface through the middle of the flat edge, not below it.
@@ -89,7 +90,9 @@ def _seen(mesh: Mesh, curvature: Reals, middle: Reals, back: Reals) -> Reals:
     """
     _, along, other = _edges(mesh)
     normal, beyond = mesh.normals, np.roll(curvature, -1, axis=1)
-    # From the middle of the flat edge to that of the curve (Vlachos et al. 2001, section 3.1).
+    # From the middle of the flat edge to that of the curve, the Bezier cubic whose inner points are
+    # the third points of the edge, each projected to the tangent plane of the nearer end (Vlachos
+    # et al. 2001).
     offset = -(_dot(along, normal) * normal - _dot(along, other) * other) / 8
     out = _outward(mesh, back)
     facing = np.maximum(_dot(middle, out), OUTLINE)

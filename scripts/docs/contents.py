@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
-from phong75.model.config import TECHNIQUES
+from phong75.model.config import DEFAULT, TECHNIQUES
 from phong75.model.studies.methods import CONFIGS
 from phong75.scripts import recorded
 from phong75.scripts.docs import commands, facts, tables
@@ -128,6 +129,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "formats": facts.formats,
     "ports": facts.port_table,
     "span-word": facts.span_table,
+    "span-word-quadratic": lambda: facts.span_table(replace(DEFAULT, normal_order=2)),
     "pixel-word": facts.pixel_table,
     "registers": facts.register_table,
     "budget": facts.budget,
@@ -143,6 +145,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "sweep": lambda: tables.sweep(_sweep()),
     "clocks": lambda: tables.clocks(_clocks()),
     "surfaces": lambda: tables.surfaces(_record("tessellation")),
+    "quadratic-normals": lambda: tables.quadratic_normals(_record("tessellation")),
     "error-families": lambda: tables.error_families(_record("stability")["errors"]),
     "cases": lambda: tables.cases(_record("stability")["rows"], facts.case_words()),
     "powers": lambda: tables.powers(_record("stability")["powers"]),

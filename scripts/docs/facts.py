@@ -123,8 +123,12 @@ def span_table(config: Config = C) -> str:
     rows = []
     for f in fields:
         carried = f.name.startswith(("start_", "step_"))
+        bent = f.name.startswith("bend_")
         squared = f.name not in ("x", "y", "length", "material") and not carried
-        meaning = str(config.normal if carried else config.squared if squared else "whole number")
+        meaning = str(
+            config.normal if carried else config.bend if bent
+            else config.squared if squared else "whole number"
+        )  # fmt: skip
         rows.append((f"`{f.name}`", f"{f.lsb + f.bits - 1}:{f.lsb}", meaning))
     return markdown(("field", "bits of `s_axis_tdata`", "format"), rows, left=3)
 

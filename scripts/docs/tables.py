@@ -186,6 +186,20 @@ def _random_scenes(found: dict[str, Any]) -> list[tuple[str, str, str]]:
     )]  # fmt: skip
 
 
+def _more_synthesis(found: dict[str, Any]) -> list[tuple[str, str, str]]:
+    rows = []
+    for name, of in found["configurations"].items():
+        used, clock = of["resources"], of["clock_mhz"]
+        rows.append((
+            f"the same chip with `{name}`",
+            f"{clock['median']:.1f} MHz, median of {of['seeds']} placements, best "
+            f"{clock['best']:.1f} MHz; {used['dsp']} multipliers, {used['ebr']} block RAMs, "
+            f"{used['lut_sites']} LUT sites, {used['ff']} flip-flops",
+            "a timing estimate, clamped as above",
+        ))  # fmt: skip
+    return rows
+
+
 def _activity(found: dict[str, Any]) -> list[tuple[str, str, str]]:
     def toggles(name: str) -> str:
         return ", ".join(f"{scene} {of[name]:.0f}" for scene, of in found["scenes"].items())
@@ -210,14 +224,15 @@ def _benchmark(found: dict[str, Any]) -> list[tuple[str, str, str]]:
 
 #: The records of the table of long runs, in its order, and what makes lines of each.
 LONG_RUNS: dict[str, Callable[[dict[str, Any]], list[tuple[str, str, str]]]] = {
-    "synth-grade6": _synthesis, "synth-grade8": _synthesis, "netlist": _netlist,
+    "synth-grade6": _synthesis, "synth-grade8": _synthesis, "synth-more": _more_synthesis,
+    "netlist": _netlist,
     "icarus": _icarus, "formal": _formal, "coverage": _coverage, "mutate": _mutants,
     "prune-random": _random_scenes, "activity": _activity, "bench": _benchmark,
 }  # fmt: skip
 
 
 #: Which of them docs/ shows where.
-HARDWARE = ("synth-grade6", "synth-grade8", "activity")
+HARDWARE = ("synth-grade6", "synth-grade8", "synth-more", "activity")
 TESTS = ("netlist", "icarus", "formal", "coverage", "mutate", "prune-random")
 SPEED = ("bench",)
 
@@ -358,6 +373,31 @@ def surfaces(record: dict[str, Any]) -> str:
     header = ("mesh", "what", "flat", "Gouraud", "Phong", "quadratic, Vlachos", "quadratic",
               "quadratic, exact", "cubic (model only)")  # fmt: skip
     return markdown(header, rows, left=2)
+
+
+def quadratic_normals(record: dict[str, Any]) -> str:
+    """What each rule of mid-edge normals gains on the torus, and how it converges."""
+    names = {
+        "gouraud": "Gouraud's shading", "phong": "linear normals",
+        "quadratic_vlachos": "`quadratic_vlachos`", "quadratic": "`quadratic`",
+        "quadratic_exact": "`quadratic_exact`",
+    }  # fmt: skip
+    torus = _by_shape(record["meshes"])["torus"]
+    jumps = record["mach_bands"]["torus"]["16"]
+    rows = [
+        (
+            name, number(torus[method]["method_rms_lsb"], 2),
+            number(torus[method]["facing_rms_lsb"], 2),
+            ", ".join(number(by[method]["facing_rms"], 1) for by in record["orders"].values()),
+            number(jumps[method]["slope_mean"], 2),
+        )
+        for method, name in names.items()
+    ]  # fmt: skip
+    header = ("normals", f"torus of {torus['phong']['triangles']} triangles, RMS error, LSB",
+              "the same within 60° of the eye",
+              f"order of convergence: {', '.join(record['orders'])}",
+              "torus of 16 steps: jump of the slope at edges, LSB per pixel")  # fmt: skip
+    return markdown(header, rows)
 
 
 def _by_shape(meshes: Iterable[dict[str, Any]]) -> dict[str, dict[str, dict[str, Any]]]:

@@ -96,16 +96,21 @@ def judge(case: CornerCase, results: list[SimResult], config: Config = DEFAULT) 
     )  # fmt: skip
 
 
-def run_cases(cases: list[CornerCase], bench: Bench | None = None) -> list[CornerCaseRow]:
+def run_cases(
+    cases: list[CornerCase], bench: Bench | None = None, config: Config = DEFAULT
+) -> list[CornerCaseRow]:
     """Simulate all `cases` twice, with zeros and with random register contents at power-up.
 
+    bench: of whole frames, by default that of `config`.
     Raises BuildError, SimulationError.
     """
     runs = [
-        simulate_jobs([SimJob(case.frame) for case in cases], bench=bench, power_up=power_up)
+        simulate_jobs(
+            [SimJob(case.frame) for case in cases], config, bench=bench, power_up=power_up
+        )
         for power_up in (None, POWER_UP)
     ]
-    return [judge(c, list(results)) for c, results in zip(cases, zip(*runs, strict=True),
+    return [judge(c, list(results), config) for c, results in zip(cases, zip(*runs, strict=True),
                                                           strict=True)]  # fmt: skip
 
 
