@@ -324,13 +324,13 @@ def random_spans(rng, count, longest):
     return spans
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=20, deadline=None, derandomize=True)
 @given(seeds)
 def test_illegal_spans_are_those_that_leave_a_word(seed):
     """Against a walk through the pixels in whole numbers of any size."""
     rng = np.random.default_rng(seed)
     spans = random_spans(rng, 20, 40)
-    spans["length"][0] = 4096
+    spans["length"][0] = rng.choice([40, 400, 4096])
     frame = replace(plain(spans=20), spans=spans)
     form, want = QUADRATIC.bend, []
     for s in spans:

@@ -143,72 +143,38 @@ module phong_unit (
   );
 
   // ---- three interpolators in parallel ----
-  generate
-    if (NORMAL_ORDER == 2) begin : gen_quadratic
-      second_difference_interpolator u_interpolator_x (
-          .clk(clk),
-          .load(load),
-          .advance(advance),
-          .start(start_x),
-          .step(slope_x),
-          .bend(INTERPOLATE_X ? bend_x : {BEND_BITS{1'b0}}),
-          .value(normal_x),
-          .overflow(overflow_x)
-      );
+  normal_interpolator u_interpolator_x (
+      .clk(clk),
+      .load(load),
+      .advance(advance),
+      .start(start_x),
+      .step(slope_x),
+      .bend(INTERPOLATE_X ? bend_x : {BEND_BITS{1'b0}}),
+      .value(normal_x),
+      .overflow(overflow_x)
+  );
 
-      second_difference_interpolator u_interpolator_y (
-          .clk(clk),
-          .load(load),
-          .advance(advance),
-          .start(start_y),
-          .step(slope_y),
-          .bend(INTERPOLATE_Y ? bend_y : {BEND_BITS{1'b0}}),
-          .value(normal_y),
-          .overflow(overflow_y)
-      );
+  normal_interpolator u_interpolator_y (
+      .clk(clk),
+      .load(load),
+      .advance(advance),
+      .start(start_y),
+      .step(slope_y),
+      .bend(INTERPOLATE_Y ? bend_y : {BEND_BITS{1'b0}}),
+      .value(normal_y),
+      .overflow(overflow_y)
+  );
 
-      second_difference_interpolator u_interpolator_z (
-          .clk(clk),
-          .load(load),
-          .advance(advance),
-          .start(start_z),
-          .step(slope_z),
-          .bend(INTERPOLATE_Z ? bend_z : {BEND_BITS{1'b0}}),
-          .value(normal_z),
-          .overflow(overflow_z)
-      );
-    end else begin : gen_linear
-      linear_interpolator u_interpolator_x (
-          .clk(clk),
-          .load(load),
-          .advance(advance),
-          .start(start_x),
-          .step(slope_x),
-          .value(normal_x),
-          .overflow(overflow_x)
-      );
-
-      linear_interpolator u_interpolator_y (
-          .clk(clk),
-          .load(load),
-          .advance(advance),
-          .start(start_y),
-          .step(slope_y),
-          .value(normal_y),
-          .overflow(overflow_y)
-      );
-
-      linear_interpolator u_interpolator_z (
-          .clk(clk),
-          .load(load),
-          .advance(advance),
-          .start(start_z),
-          .step(slope_z),
-          .value(normal_z),
-          .overflow(overflow_z)
-      );
-    end
-  endgenerate
+  normal_interpolator u_interpolator_z (
+      .clk(clk),
+      .load(load),
+      .advance(advance),
+      .start(start_z),
+      .step(slope_z),
+      .bend(INTERPOLATE_Z ? bend_z : {BEND_BITS{1'b0}}),
+      .value(normal_z),
+      .overflow(overflow_z)
+  );
 
   // ---- unit normal ----
   wire [UNIT_BITS-1:0] unit_x, unit_y, unit_z;
