@@ -57,8 +57,11 @@ def render(
     """All pixels of `frame`, bit for bit as the RTL of `config` gives them.
 
     progress: called with the part done, 0 to 1, as the work goes on. Pixels of illegal spans are
-    covered; pixels of spans that `config` leaves out (see `pruning.span_guard`) are not.
+    covered; pixels of spans that `config` leaves out (see `pruning.span_guard`) are not. Raises
+    ValueError if spans have a bend, and `config` is not made for bends (see `frame.fitted`).
     """
+    if config.normal_order == 1 and frame.spans["bend"].any():
+        raise ValueError(f"spans have a bend, but {config.name} has no normal_order 2")
     total = pixel_count(frame.spans)
     x, y = np.empty(total, np.int64), np.empty(total, np.int64)
     rgb, last = np.empty((total, 3), np.int64), np.empty(total, bool)
