@@ -17,8 +17,15 @@ from phong75.model import twin
 from phong75.model.analysis import reference
 from phong75.model.analysis.pictures import picture
 from phong75.model.config import DEFAULT, TECHNIQUES, Config, Format
-from phong75.model.frame import SPAN_DTYPE, ExactFrame, Frame, InputError, MaterialTable
-from phong75.model.front.scene import Scene, bundled_scenes, load_scene
+from phong75.model.frame import (
+    SPAN_DTYPE,
+    ExactFrame,
+    Frame,
+    InputError,
+    MaterialTable,
+    fitted,
+)
+from phong75.model.front.scene import Scene, bundled_scenes, load_scene, technique_scenes
 from phong75.model.front.scene_to_spans import FrontEnd
 from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import read_spans, write_spans
@@ -38,12 +45,14 @@ __all__ = [
     "Pixels",
     "Scene",
     "bundled_scenes",
+    "fitted",
     "front_end",
     "load_scene",
     "picture",
     "read_spans",
     "reference",
     "render",
+    "technique_scenes",
     "twin",
     "write_spans",
 ]

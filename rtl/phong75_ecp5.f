@@ -12,7 +12,6 @@ phong_pipeline.v
 core/span_walker.v
 core/phong_unit.v
 core/register_map.v
-core/normal_interpolator.v
 core/linear_interpolator.v
 core/normalizer.v
 core/inverse_sqrt.v

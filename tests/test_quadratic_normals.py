@@ -279,6 +279,13 @@ def test_what_no_span_can_hold_becomes_single_pixels():
     assert start == pytest.approx(want)
 
 
+def test_a_model_without_second_differences_refuses_bends():
+    made = front_end(picture([shapes.torus(1.0, 0.4, 12, 8)]))
+    with pytest.raises(ValueError, match="default has no normal_order 2"):
+        twin.render(made.frame)
+    assert len(twin.render(made.frame, fitted(DEFAULT, made.frame))) > 1000
+
+
 def test_linear_frames_need_no_bend():
     made = front_end(picture([shapes.torus(1.0, 0.4, 12, 8)], "linear"))
     assert not made.frame.spans["bend"].any() and not made.exact.bend.any()

@@ -10,7 +10,7 @@ import numpy as np
 
 from phong75.model.arrays import Flags, Ints
 from phong75.model.config import DEFAULT, Config
-from phong75.model.frame import Frame, with_lights
+from phong75.model.frame import Frame, fitted, with_lights
 from phong75.model.twin.core.normalizer import zero
 from phong75.model.twin.core.phong_unit import interpolate, phong_unit
 from phong75.model.twin.core.span_walker import pixel_count, walk
@@ -59,11 +59,16 @@ def render(
 ) -> Pixels:
     """All pixels of `frame`, bit for bit as the RTL of `config` gives them.
 
-    A `config` for one white light gets the lights of the frame (see `frame.fitted`). progress:
-    called with the part done, 0 to 1, as the work goes on. Pixels of illegal spans are covered;
-    pixels of spans that `config` leaves out (see `pruning.span_guard`) are not. Raises InputError
-    if `config` cannot have the frame's lights.
+    The default configuration gets all that the frame needs (see `frame.fitted`), any other one for
+    one white light the lights of the frame. progress: called with the part done, 0 to 1, as the
+    work goes on. Pixels of illegal spans are covered; pixels of spans that `config` leaves out (see
+    `pruning.span_guard`) are not. Raises InputError if `config` cannot have the frame's lights,
+    ValueError if spans have a bend and `config` is not made for bends.
     """
+    if config == DEFAULT:
+        config = fitted(config, frame)
+    if config.normal_order == 1 and frame.spans["bend"].any():
+        raise ValueError(f"spans have a bend, but {config.name} has no normal_order 2")
     config = with_lights(config, frame)
     total = pixel_count(frame.spans)
     x, y = np.empty(total, np.int64), np.empty(total, np.int64)

@@ -143,38 +143,83 @@ module phong_unit (
   );
 
   // ---- three interpolators in parallel ----
-  normal_interpolator u_interpolator_x (
+  // Where normals are quadratic, nothing reads the linear interpolators, and synthesis leaves them
+  // out. They are outside the `generate`, so that the cells of a linear build keep their names and
+  // their order.
+  wire [NORMAL_BITS-1:0] linear_x, linear_y, linear_z;
+  wire leaves_x, leaves_y, leaves_z;  // a component has left its word
+
+  linear_interpolator u_interpolator_x (
       .clk(clk),
       .load(load),
       .advance(advance),
       .start(start_x),
       .step(slope_x),
-      .bend(INTERPOLATE_X ? bend_x : {BEND_BITS{1'b0}}),
-      .value(normal_x),
-      .overflow(overflow_x)
+      .value(linear_x),
+      .overflow(leaves_x)
   );
 
-  normal_interpolator u_interpolator_y (
+  linear_interpolator u_interpolator_y (
       .clk(clk),
       .load(load),
       .advance(advance),
       .start(start_y),
       .step(slope_y),
-      .bend(INTERPOLATE_Y ? bend_y : {BEND_BITS{1'b0}}),
-      .value(normal_y),
-      .overflow(overflow_y)
+      .value(linear_y),
+      .overflow(leaves_y)
   );
 
-  normal_interpolator u_interpolator_z (
+  linear_interpolator u_interpolator_z (
       .clk(clk),
       .load(load),
       .advance(advance),
       .start(start_z),
       .step(slope_z),
-      .bend(INTERPOLATE_Z ? bend_z : {BEND_BITS{1'b0}}),
-      .value(normal_z),
-      .overflow(overflow_z)
+      .value(linear_z),
+      .overflow(leaves_z)
   );
+
+  generate
+    if (NORMAL_ORDER == 2) begin : gen_quadratic
+      second_difference_interpolator u_quadratic_x (
+          .clk(clk),
+          .load(load),
+          .advance(advance),
+          .start(start_x),
+          .step(slope_x),
+          .bend(INTERPOLATE_X ? bend_x : {BEND_BITS{1'b0}}),
+          .value(normal_x),
+          .overflow(overflow_x)
+      );
+
+      second_difference_interpolator u_quadratic_y (
+          .clk(clk),
+          .load(load),
+          .advance(advance),
+          .start(start_y),
+          .step(slope_y),
+          .bend(INTERPOLATE_Y ? bend_y : {BEND_BITS{1'b0}}),
+          .value(normal_y),
+          .overflow(overflow_y)
+      );
+
+      second_difference_interpolator u_quadratic_z (
+          .clk(clk),
+          .load(load),
+          .advance(advance),
+          .start(start_z),
+          .step(slope_z),
+          .bend(INTERPOLATE_Z ? bend_z : {BEND_BITS{1'b0}}),
+          .value(normal_z),
+          .overflow(overflow_z)
+      );
+
+      wire unused = &{1'b0, linear_x, linear_y, linear_z, leaves_x, leaves_y, leaves_z};
+    end else begin : gen_linear
+      assign {normal_x, normal_y, normal_z} = {linear_x, linear_y, linear_z};
+      assign {overflow_x, overflow_y, overflow_z} = {leaves_x, leaves_y, leaves_z};
+    end
+  endgenerate
 
   // ---- unit normal ----
   wire [UNIT_BITS-1:0] unit_x, unit_y, unit_z;

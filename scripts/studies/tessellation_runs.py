@@ -46,13 +46,15 @@ COLUMNS = (
 def measure(
     shape: str, levels: Sequence[int], size=tessellation.SIZE,
     progress: Callable[[str], None] = lambda text: None,
+    techniques: Sequence[str] = tessellation.METHODS,
 ) -> list[dict]:  # fmt: skip
-    """A row (COLUMNS) for each technique and each of `levels` of `shape`.
+    """A row (COLUMNS) for each of `techniques`, the first of which is "phong", and each of `levels`
+    of `shape`.
 
     Raises MismatchError, BuildError, SimulationError.
     """
     surface, rows = SURFACES[shape], []
-    for technique in tessellation.METHODS:
+    for technique in techniques:
         progress(f"{shape}, {technique}")
         pictures, results = [], [None] * len(levels)
         if technique == "cubic":
@@ -100,7 +102,7 @@ def summary(rows: list[dict]) -> dict:
     orders: dict = {}
     for shape in dict.fromkeys(row["shape"] for row in rows):
         orders[shape] = {}
-        for technique in tessellation.METHODS:
+        for technique in dict.fromkeys(row["technique"] for row in rows):
             own = [r for r in rows if (r["shape"], r["technique"]) == (shape, technique)]
             levels = [r["level"] for r in own]
             orders[shape][technique] = {
