@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from phong75.model.frame import InputError
+from phong75.model.front.mesh_files.quantized import dequantize
 
 #: Files with these suffixes are tested, feature by feature.
 TESTED_SUFFIXES = (".obj", ".ply", ".stl", ".glb", ".gltf")
@@ -29,7 +30,7 @@ UNTESTED_SUFFIXES = (
     ".3d .3ds .3mf .ac .ac3d .acc .amf .ase .ask .assbin .b3d .blend .bsp .bvh .cob .csm .dae .dxf "
     ".enff .fbx .hmp .ifc .ifczip .iqm .irr .irrmesh .lwo .lws .lxo .md2 .md3 .md5anim .md5camera "
     ".md5mesh .mdc .mdl .mesh .mesh.xml .mot .ms3d .ndo .nff .off .ogex .pk3 .pmx .prj .q3o .q3s "
-    ".raw .scn .sib .smd .step .stp .ter .uc .usd .usda .usdc .usdz .vrm .vta .wrl .x .x3d .x3db "
+    ".raw .scn .sib .smd .step .stp .ter .uc .vrm .vta .x .x3d .x3db "
     ".xgl .xml .zae .zgl"
 ).split()
 
@@ -190,6 +191,12 @@ def _corner(corner: bytes, counts: dict[bytes, int]) -> str | None:
 
 # -- PLY -------------------------------------------------------------------------------------------
 
+_PLY_BYTES = {
+    b"char": 1, b"uchar": 1, b"int8": 1, b"uint8": 1, b"short": 2, b"ushort": 2, b"int16": 2,
+    b"uint16": 2, b"int": 4, b"uint": 4, b"int32": 4, b"uint32": 4, b"float": 4, b"float32": 4,
+    b"double": 8, b"float64": 8,
+}  # fmt: skip
+
 
 def _ply(name: str, data: Data, prepared: Prepared) -> None:
     """Look at the header of a PLY file."""
@@ -211,17 +218,21 @@ def _ply(name: str, data: Data, prepared: Prepared) -> None:
         raise InputError(f"{name}: the header declares no vertices")
     if not counts.get(b"face") and not counts.get(b"tristrips"):
         raise InputError(f"{name}: the mesh has no faces")
-    owner = b""
+    owner, least = b"", 0
+    binary = any(line[:1] == [b"format"] and b"ascii" not in line for line in lines)
     for line in lines:
         if line[:1] == [b"element"]:
             owner = line[1]
-        if line[:1] == [b"property"] and owner == b"face" and line[-1] in (b"red", b"r"):
-            prepared.unused.append("colours of faces")
+        if line[:1] == [b"property"] and owner:
+            if owner == b"face" and line[-1] in (b"red", b"r"):
+                prepared.unused.append("colours of faces")
+            # A list may be empty; a number takes two bytes of text, with its separator.
+            kind = line[2] if line[1:2] == [b"list"] and len(line) > 2 else line[-2]
+            least += counts[owner] * (_PLY_BYTES.get(kind, 1) if binary else 2)
     body = len(text) - end.end()
-    least = sum(counts.values())  # each element takes at least one byte
-    if least > body:
+    if least > body + 1:
         raise InputError(
-            f"{name}: cut short: its header declares {least} elements, but {body} bytes follow"
+            f"{name}: cut short: its header declares at least {least} bytes, {body} follow"
         )
     prepared.materials = 0
 
@@ -271,7 +282,17 @@ def _glb(name: str, data: Data, prepared: Prepared) -> None:
         raise InputError(f"{name}: cut short: its header declares {length} bytes of {len(data)}")
     if kind != b"JSON":
         raise InputError(f"{name}: not a GLB file: the first chunk is not JSON")
-    _gltf_content(name, data[20 : 20 + chunk], prepared)
+    end = 20 + chunk
+    root = _gltf_content(name, data[20:end], prepared)
+    binary = data[end + 8 : length] if length > end + 8 else b""
+    if dequantize(name, root, binary):
+        text = json.dumps(root).encode()
+        text += b" " * (-len(text) % 4)
+        prepared.content = b"".join([
+            struct.pack("<4sIII4s", b"glTF", 2, length - chunk + len(text), len(text), b"JSON"),
+            text, data[end:length],
+        ])  # fmt: skip
+        prepared.notes.append("positions or normals in integers: converted")
 
 
 def _gltf(name: str, data: Data, prepared: Prepared) -> None:
@@ -279,11 +300,14 @@ def _gltf(name: str, data: Data, prepared: Prepared) -> None:
     text = _text(name, data)
     if text is not data:
         prepared.content = bytes(text)
-    _gltf_content(name, bytes(text), prepared)
+    root = _gltf_content(name, bytes(text), prepared)
+    if dequantize(name, root, b""):
+        prepared.content = json.dumps(root).encode()
+        prepared.notes.append("positions or normals in integers: converted")
 
 
-def _gltf_content(name: str, text: bytes, prepared: Prepared) -> None:
-    """Look at the JSON of a glTF file."""
+def _gltf_content(name: str, text: bytes, prepared: Prepared) -> dict[str, Any]:
+    """The JSON of a glTF file, once looked at."""
     try:
         root = json.loads(text)
     except (ValueError, RecursionError) as error:
@@ -312,6 +336,7 @@ def _gltf_content(name: str, text: bytes, prepared: Prepared) -> None:
         length = buffer.get("byteLength") if isinstance(buffer, dict) else None
         if isinstance(length, int) and not isinstance(length, bool) and buffer.get("uri"):
             prepared.size += max(0, min(length, 1 << 36))
+    return root
 
 
 def _list(table: dict[str, Any], key: str) -> list[Any]:

@@ -25,6 +25,9 @@ from phong75.model.front.mesh_files.checks import Prepared, diagnose_obj
 #: The package whose wheel brings Assimp, and the place of the library in that wheel.
 PACKAGE, LIBRARY = "cmeel-assimp", "cmeel.prefix/lib/libassimp.so"
 
+#: The script that reads a file.
+CHILD = Path(__file__).with_name("child.py")
+
 #: Limits of the process that reads a file of `size` bytes: seconds of processor time, and bytes of
 #: memory. On a slow machine Assimp reads 10 MB a second; its lists take up to 20 times the file.
 CPU_S, CPU_S_PER_BYTE = 20, 1e-6
@@ -98,7 +101,7 @@ def _run_child(path: Path, prepared: Prepared, arrays: int) -> dict[str, Any]:
             content.write(prepared.content)
             content.flush()
         command = [
-            sys.executable, "-I", "-S", str(Path(__file__).with_name("child.py")),
+            sys.executable, "-I", "-S", str(CHILD),
             str(library_path()), str(path), str(cpu_s), str(memory),
             str(arrays), str(content.fileno() if prepared.content is not None else -1),
             str(Path(np.__file__).parent.parent),
@@ -116,8 +119,10 @@ def _run_child(path: Path, prepared: Prepared, arrays: int) -> dict[str, Any]:
     except ValueError:
         answer = None
     if process.returncode or not isinstance(answer, dict):
-        how = f"signal {-process.returncode}" if process.returncode < 0 else "without an answer"
-        raise InputError(f"{path}: not a readable mesh: the reader ends with {how}")
+        how = "ends without an answer"
+        if process.returncode < 0:
+            how = f"crashes (signal {-process.returncode}); the file may be cut short"
+        raise InputError(f"{path}: not a readable mesh: the reader {how}")
     if "bad_alloc" in answer.get("error", "") or "out of memory" in answer.get("error", ""):
         raise InputError(f"{path}: takes more than {memory / 2**30:.1f} GiB of memory to read")
     return answer
