@@ -7,6 +7,7 @@ missed; 2 if the input or the set-up is wrong, with one line on stderr that says
 
 from __future__ import annotations
 
+import dataclasses
 import fcntl
 import json
 import os
@@ -22,7 +23,9 @@ from phong75.model import spans, twin
 from phong75.model.analysis import error_budget, metrics, pictures, pruning, reference, run_report
 from phong75.model.config import DEFAULT, TECHNIQUES, Config
 from phong75.model.frame import ExactFrame, Frame, InputError, fitted
+from phong75.model.front.mesh_files.report import MeshReport
 from phong75.model.front.scene import load_scene
+from phong75.model.front.scene_to_spans import FrontEnd
 from phong75.model.scene_to_frame import front_end
 from phong75.scripts import console, options
 from phong75.scripts.console import Steps
@@ -86,7 +89,8 @@ class Stimulus:
 
     exact: the scene before any rounding; None where there is no scene behind the spans. full: the
     configuration of the request, with what the frame needs beyond it; built: what is left of it
-    after pruning.
+    after pruning. meshes: what was decided about each object of the scene, by its name. front: what
+    the front end found besides; None where there is no scene.
     """
 
     frame: Frame
@@ -95,6 +99,8 @@ class Stimulus:
     full: Config
     built: Config
     path: Path
+    meshes: list[tuple[str, MeshReport]]
+    front: FrontEnd | None
 
 
 @dataclass(frozen=True)
@@ -117,19 +123,21 @@ def _front_end(request: RunRequest, folder: Path, steps: Steps) -> Stimulus:
         if request.spans:
             written_for = spans.written_for(request.spans, config)
             frame, exact, degenerate = spans.read_spans(request.spans, written_for), None, 0
+            meshes, front = [], None
         else:
             scene = load_scene(request.scene, request.size, config)
             for remark in scene.remarks:
                 console.note(remark)
             front = front_end(scene, config, step.done)
             frame, exact, degenerate = front.frame, front.exact, front.degenerate_triangles
+            meshes = [(item.name, item.report) for item in scene.objects if item.report]
         config = fitted(config, frame, request.units)
         built = _built(request, frame, config)
         if built.values != config.values and (reasons := pruning.missing(frame, built, config)):
             raise InputError(f"its spans have no place for this scene: {reasons[0]}")
         path = folder / "spans"
         spans.write_spans(path, frame, built)
-    return Stimulus(frame, exact, degenerate, config, built, path)
+    return Stimulus(frame, exact, degenerate, config, built, path, meshes, front)
 
 
 def _built(request: RunRequest, frame: Frame, config: Config) -> Config:
@@ -200,6 +208,9 @@ def _report(
         pruned_differ=pruned_differ,
         input_error=scene_error,
         degenerate_triangles=stimulus.degenerate_triangles,
+        mesh=[{"object": name} | dataclasses.asdict(mesh) for name, mesh in stimulus.meshes],
+        lit_facing_away=stimulus.front.lit_facing_away if stimulus.front else None,
+        empty=stimulus.front.empty if stimulus.front else None,
         wall_s={
             name: round(steps.wall_s[name], 3)
             for name in ("front_end", "model", "reference", "build", "simulate")
@@ -353,10 +364,21 @@ def _locked(out: Path) -> Iterator[None]:
             path.unlink(missing_ok=True)
 
 
+def mesh_lines(report: dict) -> list[str]:
+    """What was decided about the meshes of the scene, and why there is no picture, a line each."""
+    lines = []
+    for mesh in report["mesh"]:
+        fields = {key: value for key, value in mesh.items() if key != "object"}
+        lines += [f"{mesh['object']}: {line}" for line in MeshReport(**fields).lines()]
+    return lines + ([report["empty"]] if report["empty"] else [])
+
+
 def main(request: RunRequest) -> int:
     """Run `request`, print what came of it; returns the exit code. Raises as `run`."""
     report = run(request, run_frame.simulate, Steps())
     console.show(table(report))
+    for line in mesh_lines(report):
+        console.say(line)
     console.say(f"{request.out}: {' '.join(FILES)}")
     failures = run_report.failures(report)
     for line in failures:

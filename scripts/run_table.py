@@ -44,6 +44,10 @@ def table(report: dict) -> Table:
         rows.add_row("zero vectors", count(report["zero_normals"]), "pixels without a direction")
     if report["degenerate_triangles"]:
         rows.add_row("triangles skipped", count(report["degenerate_triangles"]), "without area")
+    if report["lit_facing_away"]:
+        rows.add_row(
+            "lit, facing away", count(report["lit_facing_away"]), "lit_faces_only = true: dark"
+        )
     rows.add_section()
     mismatches = report["compare"]["mismatches"]
     rows.add_row("RTL against model", verdict(not mismatches), f"{count(mismatches)} pixels differ")

@@ -108,7 +108,8 @@ def test_a_good_run(start, scene, tmp_path):
         "schema", "scene", "technique", "size", "pixels", "spans", "illegal_spans", "unsupported",
         "zero_normals", "cycles",
         "cycles_per_pixel", "latency_cycles", "stall_cycles", "utilization", "budget", "compare",
-        "error", "input_error", "degenerate_triangles", "config", "versions", "wall_s",
+        "error", "input_error", "degenerate_triangles", "mesh", "lit_facing_away", "empty",
+        "config", "versions", "wall_s",
     ]  # fmt: skip
     assert report["scene"] == "small" and report["size"] == [32, 24]
     pixels, cycles = report["pixels"], report["cycles"]

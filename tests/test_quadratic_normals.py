@@ -263,7 +263,7 @@ def test_what_no_span_can_hold_becomes_single_pixels():
     segment = scene_to_spans.Segments(*(np.array([v]) for v in (0, 0, 0, 4)))
     triangles = scene_to_spans.Triangles(
         np.array([[0, 0, 8]]) * GRID, np.array([[0, 8, 8]]) * GRID, np.zeros((1, 3)),
-        np.zeros((1, 3, 6)), np.array([3]),
+        np.zeros((1, 3, 6)), np.array([3]), np.zeros(1),
     )  # fmt: skip
     segment.y[:] = 4
     triangles.value[0, :, 3:] = (1.0, 0, 0)
@@ -281,9 +281,10 @@ def test_what_no_span_can_hold_becomes_single_pixels():
 
 def test_a_model_without_second_differences_refuses_bends():
     made = front_end(picture([shapes.torus(1.0, 0.4, 12, 8)]))
-    with pytest.raises(ValueError, match="default has no normal_order 2"):
-        twin.render(made.frame)
+    with pytest.raises(ValueError, match="linear has no normal_order 2"):
+        twin.render(made.frame, replace(DEFAULT, name="linear"))
     assert len(twin.render(made.frame, fitted(DEFAULT, made.frame))) > 1000
+    assert len(twin.render(made.frame)) > 1000  # the default configuration is fitted
 
 
 def test_linear_frames_need_no_bend():

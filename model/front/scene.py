@@ -6,7 +6,9 @@ value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All
 
     size = [640, 480]               # pixels
     background = [0.0, 0.0, 0.0]    # red, green, blue, 0 to 1
-    two_sided = false               # light both sides of surfaces, cull no back faces
+    two_sided = false               # show both sides of surfaces: normals turn to the eye
+    toward_light = false            # "the normal will always point toward the light source"
+    lit_faces_only = false          # keep faces dark that turn away from the light
     interpolation = "linear"        # as in the paper; or "normalized_edges", or "quadratic",
                                     # "quadratic_vlachos", "quadratic_exact" (`mid_edge_normals`)
     shading = "smooth"              # of objects that do not say; "flat": one normal per face
@@ -44,6 +46,7 @@ value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All
     diffuse = [0.6, 0.5, 0.4]       # kd; default: color times (1 - d)
     specular = [0.9, 0.7, 0.3]      # ks; default: 1 each; with this key W is 1 by default
     emission = [0.0, 0.0, 0.0]      # e
+    two_sided = true                # of all objects of this material
 
     [[objects]]
     shape = "teapot"                # or sphere, torus, cone, pyramid
@@ -54,7 +57,8 @@ value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All
     scale = 1.0                     # or [x, y, z]; applied first
     rotate = [0, 0, 0]              # degrees about x, y, z; applied after the scale
     translate = [0, 0, 0]           # applied last
-    material = "NAME"               # or { color = ..., n = ... }
+    material = "NAME"               # or { color = ..., n = ... }; default: those of the mesh file
+    two_sided = true                # of this object
     name = "my teapot"
 
 W is piecewise linear in Zn between the given points and constant beyond them. The intensity is
@@ -75,7 +79,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from phong75.model.arrays import ArrayLike, Reals
+from phong75.model.arrays import ArrayLike, Flags, Ints, Reals
 from phong75.model.config import DEFAULT, MAX_LIGHTS, Config
 from phong75.model.frame import InputError
 from phong75.model.front import mid_edge_normals, notes, shapes
@@ -90,7 +94,12 @@ from phong75.model.front.camera import (
     fit_perspective,
     view_axes,
 )
-from phong75.model.front.mesh import MESH_SUFFIXES, Mesh, is_consistent, load_mesh
+from phong75.model.front.mesh import Mesh
+from phong75.model.front.mesh_files.checks import TESTED_SUFFIXES
+from phong75.model.front.mesh_files.load import MESH_SUFFIXES, load_mesh_file
+from phong75.model.front.mesh_files.materials import Materials, reduce_materials
+from phong75.model.front.mesh_files.report import MeshReport
+from phong75.model.front.mesh_normals import normals_and_areas
 
 SCENES = Path(__file__).parent.parent / "scenes"
 TECHNIQUE_SCENES = SCENES / "techniques"
@@ -135,7 +144,8 @@ class Material:
     weight_zn, weight_values: points of W(i): increasing Zn = cos(i) and W there, both 0 to 1. W is
     piecewise linear in Zn between the points and constant beyond them.
     ambient, diffuse, specular: ka, kd, ks of OpenGL's model, 0 to 1; None for the paper's rule, by
-    which they are Cp d, Cp (1 - d) and 1. emission: e, 0 to 1.
+    which they are Cp d, Cp (1 - d) and 1. emission: e, 0 to 1. two_sided: show both sides of the
+    objects of this material.
     """
 
     color: tuple[float, float, float] = (0.65, 0.62, 0.58)
@@ -147,6 +157,7 @@ class Material:
     diffuse: Colour | None = None
     specular: Colour | None = None
     emission: Colour = BLACK
+    two_sided: bool = False
 
     @property
     def ka(self) -> Reals:
@@ -187,11 +198,18 @@ class Light:
 
 @dataclass
 class SceneObject:
-    """A mesh in scene coordinates, and the index of its material in `Scene.materials`."""
+    """A mesh in scene coordinates.
+
+    material: index in `Scene.materials`, of the object or of each triangle, int64[F]. two_sided:
+    whether to show both sides, of the object or of each triangle, bool[F]. report: what was decided
+    about the mesh.
+    """
 
     name: str
     mesh: Mesh
-    material: int
+    material: int | Ints
+    two_sided: bool | Flags = False
+    report: MeshReport | None = None
 
 
 @dataclass(repr=False)
@@ -199,10 +217,14 @@ class Scene:
     """A checked scene, ready for the front end.
 
     width, height: pixels. background: red, green, blue, 0 to 1. light: float64[3], unit vector
-    towards the first light, scene axes. two_sided: shade both sides of surfaces, cull no back
-    faces. interpolation: "linear" (the paper's), "normalized_edges" (see `interpolation`) or one of
-    `mid_edge_normals.RULES`. ambient: Ia of red, green and blue. lights: all lights, by default a
-    white one at `light`. remarks: sentences about what was assumed where the file leaves it open.
+    towards the first light, scene axes. two_sided: show both sides of all surfaces; the normals of
+    faces that turn away from the eye are reversed. interpolation: "linear" (the paper's),
+    "normalized_edges" (see `interpolation`) or one of `mid_edge_normals.RULES`. ambient: Ia of red,
+    green and blue. lights: all lights, by default a white one at `light`. remarks: sentences about
+    what was assumed where the file leaves it open. toward_light: light both sides of all surfaces;
+    the hardware reverses normals that point away from the light (Phong 1975, "Illumination",
+    remark 2). lit_faces_only: leave faces dark that turn away from the light, although interpolated
+    normals would light a part of them.
     """
 
     name: str
@@ -218,6 +240,8 @@ class Scene:
     ambient: Colour = WHITE
     lights: list[Light] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
+    toward_light: bool = False
+    lit_faces_only: bool = False
 
     def __post_init__(self) -> None:
         self.lights = self.lights or [Light(self.light)]
@@ -276,20 +300,25 @@ def load_scene(
         return _mesh_scene(path, size, config)
     raise InputError(
         f"{name}: neither a scene (.toml, {notes.SCENE_SUFFIX}) "
-        f"nor a mesh ({', '.join(MESH_SUFFIXES)})"
+        f"nor a mesh ({', '.join(TESTED_SUFFIXES)})"
     )
 
 
 def _mesh_scene(path: Path, size: tuple[int, int] | None, config: Config) -> Scene:
-    """A scene that shows one mesh file with the default camera, light and material."""
-    mesh = load_mesh(path)
+    """A scene that shows one mesh file with the default camera and light."""
+    item, materials = _file_object(path.stem, path, None)
+    assert item.report is not None
     # In STL files (3D printing) z usually points up; in the other formats, y.
-    table = {} if path.suffix.lower() == ".stl" else {"up": [0.0, 1.0, 0.0]}
+    table: dict[str, Any] = (
+        {} if (item.report.up or "").startswith("z") else {"up": [0.0, 1.0, 0.0]}
+    )
     if "up" in table:
         table["direction"] = [0.35, 0.35, 1.0]
     root = _Table({"camera": table}, str(path))
     width, height = _size(root, size, config)
-    camera = _camera(root.table("camera"), mesh.vertices, width, height)
+    camera = _camera(root.table("camera"), item.mesh.vertices, width, height)
+    rows: list[Material] = []
+    _place_materials([(item, materials)], rows, {}, config, path)
     return Scene(
         path.stem,
         width,
@@ -297,17 +326,91 @@ def _mesh_scene(path: Path, size: tuple[int, int] | None, config: Config) -> Sce
         DEFAULT_BACKGROUND,
         camera,
         _light(root.table("light"), camera).direction,
-        # Two-sided if the winding is mixed: culling by winding would hide visible faces at random.
-        not is_consistent(mesh),
+        False,
         "linear",
-        [SceneObject(path.stem, mesh, 0)],
+        [item],
+        rows,
     )
+
+
+def _file_object(name: str, path: Path, crease: float | None) -> tuple[SceneObject, Materials]:
+    """The object of a mesh file, and its materials; `SceneObject.material` are their indices."""
+    loaded = load_mesh_file(path, crease)
+    item = SceneObject(name, loaded.mesh, loaded.material, loaded.two_sided, loaded.report)
+    return item, loaded.materials
+
+
+def _place_materials(
+    objects: list[tuple[SceneObject, Materials]], materials: list[Material],
+    indices: dict[str | None, int], config: Config, path: Path,
+) -> None:  # fmt: skip
+    """Add the materials of mesh files to `materials`, and let `objects` refer to them.
+
+    objects: each with the materials of its file, to which its `material`, int64[F], refers; -1
+    stands for the default material. All files share what the scene's own materials leave of the
+    table. Raises InputError if nothing is left.
+    """
+    of_faces = [np.asarray(item.material) for item, _ in objects]
+    if any(np.any(material == -1) for material in of_faces):
+        _default_material(materials, indices)
+    if not any(len(own) for _, own in objects):
+        for item, _ in objects:
+            item.material = indices[None]
+        return
+    room = config.materials - len(materials)
+    if room < 1:
+        raise InputError(
+            f"{path}: {len(materials)} materials leave no room for those of a mesh file: "
+            f"the table has {config.materials} entries"
+        )
+    joined = Materials.join([own for _, own in objects])
+    if config.channels == 1:
+        joined = joined.grey()
+    area = np.zeros(len(joined))
+    first = 0
+    for (item, own), material in zip(objects, of_faces, strict=True):
+        kept = material >= 0
+        sizes = normals_and_areas(item.mesh.vertices, item.mesh.faces)[1]
+        of_own = np.bincount(material[kept], sizes[kept], len(own))
+        area[first : first + len(own)] = of_own / max(sizes.sum(), 1e-300)
+        first += len(own)
+    table, index, reduction = reduce_materials(joined, area, room)
+    base, first = len(materials), 0
+    for row in range(len(table)):
+        red, green, blue = table.colour[row].tolist()
+        w = float(table.w[row])
+        materials.append(
+            Material(
+                (red, green, blue), float(table.d[row]), float(table.n[row]), weight_values=(w, w)
+            )
+        )
+    for (item, own), material in zip(objects, of_faces, strict=True):
+        rows = index[first : first + len(own)] + base
+        missing = indices.get(None, -1)
+        item.material = np.append(rows, missing)[material]  # -1 takes the last one
+        first += len(own)
+        if reduction.before > reduction.after and item.report:
+            item.report.reduction = {
+                "before": reduction.before,
+                "after": reduction.after,
+                "largest_change": reduction.largest,
+            }
+
+
+def _default_material(materials: list[Material], indices: dict[str | None, int]) -> int:
+    """The index of the default material, which is added to `materials` if it is not there."""
+    index = indices.setdefault(None, len(materials))
+    if index == len(materials):
+        materials.append(Material())
+    return index
 
 
 def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Config) -> Scene:
     width, height = _size(root, size, config)
     background = root.triple("background", DEFAULT_BACKGROUND, 0.0, 1.0)
     two_sided = root.boolean("two_sided", False)
+    toward_light = root.boolean("toward_light", False)
+    lit_faces_only = root.boolean("lit_faces_only", False)
     interpolation = root.choice("interpolation", INTERPOLATIONS, "linear")
     shading = root.choice("shading", SHADINGS, "smooth")
     materials: list[Material] = []
@@ -315,15 +418,20 @@ def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Confi
     for name, table in root.tables_by_name("materials"):
         indices[name] = len(materials)
         materials.append(_material(table))
-    objects = []
+    objects, of_files = [], []
     for number, table in enumerate(root.list_of_tables("objects")):
-        objects.append(_object(table, number, path, materials, indices, shading))
+        item, own = _object(table, number, path, materials, indices, shading)
+        objects.append(item)
+        if own is not None:
+            of_files.append((item, own))
     if not objects:
         raise root.error("objects", "missing: a scene needs at least one [[objects]] table")
     if len(materials) > config.materials:
         raise root.error(
             "materials", f"{len(materials)} materials, but the table has {config.materials} entries"
         )
+    if of_files:
+        _place_materials(of_files, materials, indices, config, path)
     points = np.concatenate([o.mesh.vertices for o in objects])
     camera = _camera(root.table("camera"), points, width, height)
     lights = _lights(root, camera)
@@ -344,6 +452,8 @@ def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Confi
         _scaled(ambient, exposure),
         [_exposed(light, exposure) for light in lights],
         remarks,
+        toward_light,
+        lit_faces_only,
     )
 
 
@@ -429,6 +539,7 @@ def _material(table: _Table) -> Material:
         zn or default.weight_zn,
         values or default.weight_values,
         emission=table.triple("emission", BLACK, 0.0, 1.0),
+        two_sided=table.boolean("two_sided", default.two_sided),
         **colours,
     )
     table.finish()
@@ -471,52 +582,69 @@ def _object(
     materials: list[Material],
     indices: dict[str | None, int],
     shading: str,
-) -> SceneObject:
+) -> tuple[SceneObject, Materials | None]:
+    """The object of a [[objects]] table. If it takes its materials from a mesh file, they are
+    returned, too, and `SceneObject.material` are indices of them."""
     shape = table.choice("shape", tuple(SHAPES), None)
     file = table.text("mesh", None)
     label = table.text("name", shape or file or f"object {number}")
     if (shape is None) == (file is None):
         raise table.error("", "needs either shape = ... or mesh = ... (a file)")
     crease = table.real("crease", None, 0.0, 180.0)
+    own: Materials | None = None
     if shape:
         mesh = _shape(table, shape)
+        report = MeshReport(shape, len(mesh.faces))
         if crease is not None:
             mesh = mesh.with_crease(crease)
+            report.normals = f"made here, crease {crease:g} degrees"
+            report.crease, report.corners_made = crease, 3 * len(mesh.faces)
+        item = SceneObject(label, mesh, 0, False, report)
     else:
         assert file is not None  # checked above
         try:
-            mesh = load_mesh(path.parent / file, crease)
+            item, own = _file_object(label, path.parent / file, crease)
         except InputError as error:
             raise InputError(f"{table.where('mesh')}: {error}") from None
     if table.choice("shading", SHADINGS, shading) == "flat":
-        mesh = mesh.faceted()
+        item.mesh = item.mesh.faceted()
+        if item.report:
+            item.report.normals, item.report.crease = "of the faces: flat shading", None
+            item.report.corners_made = 3 * len(item.mesh.faces)
     if isinstance(table.value("scale", 1.0), list):
         scale = table.triple("scale", (1.0, 1.0, 1.0))
     else:
         scale = (table.real("scale", 1.0),) * 3
     if 0.0 in scale:
         raise table.error("scale", "= 0 would flatten the object")
-    mesh = mesh.transformed(
+    item.mesh = item.mesh.transformed(
         scale,
         table.triple("rotate", (0.0, 0.0, 0.0)),
         table.triple("translate", (0.0, 0.0, 0.0)),
     )
+    two_sided = table.boolean("two_sided", False)
     reference = table.value("material", None)
     if isinstance(reference, dict):
         materials.append(_material(table.child("material", reference)))
-        index = len(materials) - 1
-    elif reference is None:
-        index = indices.setdefault(None, len(materials))
-        if index == len(materials):
-            materials.append(Material())
-    else:
+        item.material, own = len(materials) - 1, None
+    elif reference is not None:
         name = table.text("material", None)
         if name not in indices:
             known = ", ".join(k for k in indices if k) or "none"
             raise table.error("material", f"= {_show(name)} is not in [materials] (known: {known})")
-        index = indices[name]
+        item.material, own = indices[name], None
+    elif own is None:
+        item.material = _default_material(materials, indices)
     table.finish()
-    return SceneObject(label, mesh, index)
+    by_material = reference is not None and materials[int(item.material)].two_sided
+    if two_sided or by_material:
+        item.two_sided = True
+        if item.report:
+            item.report.two_sided = item.report.triangles
+            item.report.two_sided_why = [f"the {'object' if two_sided else 'material'} says so"]
+    if reference is not None and item.report:
+        item.report.materials = 0
+    return item, own
 
 
 def _shape(table: _Table, shape: str) -> Mesh:

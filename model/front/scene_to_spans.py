@@ -18,11 +18,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
-from phong75.model.arrays import ArrayLike, Ints, Reals, Spans
+from phong75.model.arrays import ArrayLike, Flags, Ints, Reals, Spans
 from phong75.model.config import Config
 from phong75.model.frame import (
     SPAN_DTYPE,
@@ -70,13 +71,17 @@ class FrontEnd:
 
     frame: the picture in codes. exact: the same picture before rounding. triangles: number of
     triangles in the scene. degenerate_triangles: number of further triangles that were left out
-    because they have no area.
+    because they have no area. lit_facing_away: pixels that are lit although their triangle turns
+    away from the light, an effect of interpolated normals. empty: why there is no pixel, in words;
+    None if there is one.
     """
 
     frame: Frame
     exact: ExactFrame
     triangles: int
     degenerate_triangles: int
+    lit_facing_away: int = 0
+    empty: str | None = None
 
     def __repr__(self) -> str:
         return f"FrontEnd({self.frame}, triangles: {self.triangles})"
@@ -118,6 +123,10 @@ def make_frame(
             f"{scene.name}: interpolation = {scene.interpolation} is for one light, "
             f"there are {len(scene.lights)}"
         )
+    if scene.lit_faces_only and (len(scene.lights) > 1 or scene.interpolation in RULES):
+        raise InputError(
+            f"{scene.name}: lit_faces_only is for one light and normals without mid-edge normals"
+        )
     if scene.interpolation == "quadratic_exact":
         for item in scene.objects:
             if item.mesh.surface is None:
@@ -130,12 +139,18 @@ def make_frame(
     frame_axes, eye = light_frame(scene.light, scene.camera.axes[2])
     frame, exact = _frame(scene, eye, config)
     _add_lights(scene, frame_axes, frame, exact, config)
-    triangles = _triangles(scene, frame_axes, frame, exact, config, shade_vertices)
+    triangles, dark = _triangles(scene, frame_axes, frame, exact, config, shade_vertices)
 
-    parts = []
+    parts, lit_facing_away = [], 0
+    counted = (
+        config.technique == "phong" and not scene.toward_light
+        and len(scene.lights) == 1 and scene.interpolation not in RULES
+    )  # fmt: skip
     for segments, done in visible(triangles, scene.width, scene.height):
         if len(segments):
             parts.append(_spans(triangles, segments, config, scene.interpolation))
+            if dark.any() and counted:
+                lit_facing_away += _lit_pixels(parts[-1][0], segments, dark, scene.width)
         if progress:
             progress(done)
     if parts:
@@ -150,8 +165,66 @@ def make_frame(
         light.start, light.step = encode(start, step, frame.spans["length"], config)
     meshes = [o.mesh for o in scene.objects]
     return FrontEnd(
-        frame, exact, sum(len(m.faces) for m in meshes), sum(m.degenerate for m in meshes)
+        frame,
+        exact,
+        sum(len(m.faces) for m in meshes),
+        sum(m.degenerate for m in meshes),
+        lit_facing_away,
+        None if parts else _why_empty(scene),
     )
+
+
+def _lit_pixels(spans: Spans, segments: Segments, dark: Flags, width: int) -> int:
+    """The number of pixels that are lit although their triangle turns away from the light.
+
+    spans: those of `segments`, both sorted by y, then x. dark: bool[T], triangles that turn away
+    from the light. A pixel is lit where Zn, the normal's z, is greater than 0.
+    """
+    row = np.searchsorted(
+        segments.y * width + segments.left, spans["y"] * width + spans["x"], "right"
+    )
+    spans = spans[dark[segments.triangle[row - 1]]]
+    first, step, length = spans["start"][:, 2], spans["step"][:, 2], spans["length"]
+    slope = np.where(step == 0, 1, np.abs(step))
+    rising = length - np.clip(-first // slope + 1, 0, length)
+    falling = np.clip(-(-first // slope), 0, length)
+    level = np.where(first > 0, length, 0)
+    return int(np.sum(np.where(step > 0, rising, np.where(step < 0, falling, level))))
+
+
+def _why_empty(scene: Scene) -> str:
+    """Why a picture of `scene` has no pixel, and what to try."""
+    points = np.concatenate([o.mesh.vertices[o.mesh.faces] for o in scene.objects])
+    corners = scene.camera.project(points, scene.width, scene.height)
+    behind = np.all(corners[..., 2] < scene.camera.near, axis=1)
+    away = ~behind & (_screen_side(corners) >= 0) & ~_of_triangles(scene, "two_sided")
+    beside = len(points) - np.count_nonzero(behind) - np.count_nonzero(away)
+    reasons = [
+        (np.count_nonzero(away), "turn away from the eye (try two_sided = true in a scene file)"),
+        (np.count_nonzero(behind), "are behind the eye (try another [camera] eye or near)"),
+        (beside, "are outside the view or between pixels (try without the keys of [camera])"),
+    ]
+    return f"no pixel: of {len(points)} triangles " + ", ".join(
+        f"{'all' if count == len(points) else count} {why}" for count, why in reasons if count
+    )
+
+
+def _of_triangles(scene: Scene, name: str) -> NDArray[Any]:
+    """The attribute `name` of each object, `material` or `two_sided`, for each triangle: [T]."""
+    return np.concatenate(
+        [np.broadcast_to(getattr(o, name), len(o.mesh.faces)) for o in scene.objects]
+    )
+
+
+def _screen_side(corners: Reals) -> Reals:
+    """float64[T], negative for triangles that face the eye.
+
+    corners: float64[T, 3, 4], homogeneous screen points (X, Y, w, z). The determinant of X, Y and w
+    is twice the area on the screen times the product of all w. Its sign holds for what is in front
+    of the eye, however a triangle is clipped.
+    """
+    (x0, y0, w0), (x1, y1, w1), (x2, y2, w2) = (corners[:, k, :3].T for k in range(3))
+    return x0 * (y1 * w2 - y2 * w1) - y0 * (x1 * w2 - x2 * w1) + w0 * (x1 * y2 - x2 * y1)
 
 
 def _frame(scene: Scene, eye: Reals, config: Config) -> tuple[Frame, ExactFrame]:
@@ -166,7 +239,7 @@ def _frame(scene: Scene, eye: Reals, config: Config) -> tuple[Frame, ExactFrame]
         scene.width,
         scene.height,
         half_vector_codes(eye, config),
-        scene.two_sided,
+        scene.toward_light,
         (int(background[0]), int(background[1]), int(background[2])),
         table,
         np.zeros(0, SPAN_DTYPE),
@@ -214,43 +287,62 @@ def _triangles(
     exact: ExactFrame,
     config: Config,
     shade_vertices: VertexShader,
-) -> Triangles:
-    """The triangles of the scene that face the eye, projected to the screen.
+) -> tuple[Triangles, Flags]:
+    """The triangles of the scene that are shown, projected to the screen, and which of them turn
+    away from the light, bool[T].
 
     `Triangles.value` holds what is interpolated: for Phong's shading the normal in the light frame,
     float64[T, 3, 3], or for quadratic normals float64[T, 3, 6], the normals at a corner and in the
     middle of the opposite edge; else float64[T, 3, 6], the intensities of red, green, blue as the
     hardware computes them and then the exact ones. frame_axes: float64[3, 3], rows are the axes of
-    the light frame in world coordinates.
+    the light frame in world coordinates. The normals of a two-sided triangle are reversed if they
+    point away from the side that the eye sees.
     """
     meshes = [o.mesh for o in scene.objects]
     points = np.concatenate([m.vertices[m.faces] for m in meshes])
+    corners = scene.camera.project(points, scene.width, scene.height)
+    two_sided = _of_triangles(scene, "two_sided") | scene.two_sided | scene.toward_light
+    face = np.concatenate([face_normals(m.vertices, m.faces) for m in meshes])
     if config.technique == "flat":
-        face = np.concatenate([face_normals(m.vertices, m.faces) for m in meshes])
         normal = np.repeat(face[:, None], 3, axis=1)
     else:
         normal = np.concatenate([m.normals for m in meshes])
     value = normalize(apply_matrix(frame_axes, normal))
-    material = np.repeat([o.material for o in scene.objects], [len(m.faces) for m in meshes])
+    light_side = apply_matrix(frame_axes, face)
+    turned = np.zeros(len(points), bool)
+    if two_sided.any() and not scene.toward_light:
+        behind = two_sided & (_screen_side(corners) > 0)
+        light_side[behind] = -light_side[behind]
+        turned = two_sided & (np.sum(value * light_side[:, None], axis=(1, 2)) < 0)
+        value[turned] = -value[turned]
+    dark = light_side[:, 2] <= 0
+    if scene.lit_faces_only:
+        wrong = dark[:, None] & (value[..., 2] > 0)
+        value[wrong] = np.broadcast_to(light_side[:, None], value.shape)[wrong]
+    material = _of_triangles(scene, "material")
     if config.technique != "phong":
         both = shade_vertices(value.reshape(-1, 3), np.repeat(material, 3), frame, exact, config)
         value = np.concatenate(both, axis=-1).reshape(-1, 3, 6)
-    corners = scene.camera.project(points, scene.width, scene.height)
+    # Clipping and culling carry the index of each triangle in place of its material.
+    index = np.arange(len(points))
     if scene.interpolation in RULES:
-        middle = [_mid_edge_normals(scene, m) for m in meshes]
-        value = np.concatenate([value, apply_matrix(frame_axes, np.concatenate(middle))], axis=-1)
-        corners, value, material = _clip_quadratic(corners, value, material, scene.camera.near)
+        middle = np.concatenate([_mid_edge_normals(scene, m) for m in meshes])
+        middle = apply_matrix(frame_axes, np.where(turned[:, None, None], -middle, middle))
+        value = np.concatenate([value, middle], axis=-1)
+        corners, value, index = _clip_quadratic(corners, value, index, scene.camera.near)
     else:
-        corners, value, material = visibility.clip(corners, value, material, scene.camera.near)
+        corners, value, index = visibility.clip(corners, value, index, scene.camera.near)
     w = corners[..., 2]
-    return visibility.set_up(
+    triangles = visibility.set_up(
         corners[..., 0] / w,
         corners[..., 1] / w,
         scene.camera.depth(w, corners[..., 3]),
         value,
-        material,
-        scene.two_sided,
+        index,
+        two_sided[index],
     )
+    index, triangles.material = triangles.material, material[triangles.material]
+    return triangles, dark[index]
 
 
 def _mid_edge_normals(scene: Scene, mesh: Mesh) -> Reals:
@@ -309,7 +401,9 @@ def visible(triangles: Triangles, width: int, height: int) -> Iterator[tuple[Seg
         )
         ends = (segments.left, segments.right - 1)
         depth = [_at_pixels(part, segments, x, part.depth[..., None])[:, 0] for x in ends]
-        resolved = visibility.resolve(segments, np.stack(depth, axis=-1), width)
+        resolved = visibility.resolve(
+            segments, np.stack(depth, axis=-1), part.tolerance[segments.triangle], width
+        )
         resolved.triangle = here[resolved.triangle]
         yield resolved, bottom / height
         top = bottom

@@ -20,6 +20,7 @@ from the same integers. Hence there is no gap, and no pixel is covered twice.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,6 +49,8 @@ class Triangles:
     depth: float64[T, 3], see `Camera.depth`.
     value: float64[T, 3, C], the vector to interpolate: a normal or intensities.
     material: int64[T], index of the material.
+    tolerance: float64[T], how far `depth` interpolated over the snapped triangle can be from the
+    depth of the triangle's plane.
     """
 
     x: Ints
@@ -55,6 +58,7 @@ class Triangles:
     depth: Reals
     value: Reals
     material: Ints
+    tolerance: Reals
 
     def __len__(self) -> int:
         return len(self.x)
@@ -67,6 +71,7 @@ class Triangles:
             self.depth[which],
             self.value[which],
             self.material[which],
+            self.tolerance[which],
         )
 
 
@@ -141,24 +146,48 @@ def _cut(values: Reals, distance: Reals, inner: int, outer: int) -> Reals:
 
 
 def set_up(
-    x: Reals, y: Reals, depth: Reals, value: Reals, material: Ints, two_sided: bool
+    x: Reals, y: Reals, depth: Reals, value: Reals, material: Ints, two_sided: bool | Flags
 ) -> Triangles:
     """Snap vertices to the grid; drop back faces (unless `two_sided`) and faces without area.
 
     x, y: float64[T, 3], pixels, magnitudes up to about GUARD. Front faces are counter-clockwise,
     which is a negative area with y downward. depth, value, material: see `Triangles`, vertices in
-    the order of x and y.
+    the order of x and y. two_sided: of all triangles or of each, bool[T].
     """
     column, line = (np.floor(c * GRID + 0.5).astype(np.int64) for c in (x, y))
     x0, x1, x2 = column.T
     y0, y1, y2 = line.T
     area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
-    keep = np.flatnonzero(area != 0 if two_sided else area < 0)
+    keep = np.flatnonzero(np.where(two_sided, area != 0, area < 0))
     order = np.argsort(line[keep], axis=1, kind="stable")
     row = keep[:, None]
     return Triangles(
-        column[row, order], line[row, order], depth[row, order], value[row, order], material[keep]
+        column[row, order],
+        line[row, order],
+        depth[row, order],
+        value[row, order],
+        material[keep],
+        _depth_tolerance(x[keep], y[keep], depth[keep]),
     )
+
+
+def _depth_tolerance(x: Reals, y: Reals, depth: Reals) -> Reals:
+    """How far the depth over each snapped triangle can be from that of its plane, float64[T].
+
+    x, y, depth: float64[T, 3], before snapping. Snapping moves a vertex by at most 1/(2 GRID) pixel
+    in x and in y, and leaves its depth. So the depth at the new place is that of the plane but for
+    1/(2 GRID) times the sum of the gradient's components, and so are means of the vertices with
+    weights of 0 to 1. The gradient of a sliver is unbounded; there the range of the depths takes
+    its place. A few units in the last place of float64 cover the rounding of the interpolation.
+    """
+    (ax, bx), (ay, by), (ad, bd) = ((v[:, 1] - v[:, 0], v[:, 2] - v[:, 0]) for v in (x, y, depth))
+    area = ax * by - bx * ay
+    reach = np.abs(ad * by - bd * ay) + np.abs(bd * ax - ad * bx)
+    span = np.max(depth, axis=1) - np.min(depth, axis=1)
+    snapped = np.minimum(reach, 2 * GRID * span * np.abs(area)) / np.where(
+        area == 0, 1.0, 2 * GRID * np.abs(area)
+    )
+    return snapped + 16 * np.finfo(np.float64).eps * np.max(np.abs(depth), axis=1)
 
 
 def line_range(triangles: Triangles, width: int, height: int) -> tuple[Ints, Ints]:
@@ -217,11 +246,12 @@ def _crossing(xa: Ints, ya: Ints, xb: Ints, yb: Ints, y: Ints) -> Ints:
     return -((-reach) // (GRID * rise))
 
 
-def resolve(segments: Segments, depth: Reals, width: int) -> Segments:
+def resolve(segments: Segments, depth: Reals, tolerance: Reals, width: int) -> Segments:
     """The visible parts of `segments`, sorted by y, then x.
 
-    depth: float64[n, 2], depth at the first and at the last pixel of each segment. At equal depth
-    the earlier segment wins, which is the one of the triangle with the smaller index.
+    depth: float64[n, 2], depth at the first and at the last pixel of each segment. tolerance:
+    float64[n], see `Triangles`. Where depths may be equal, the earlier segment wins, which is the
+    one of the triangle with the smaller index.
     """
     if not len(segments):
         return segments
@@ -238,7 +268,7 @@ def resolve(segments: Segments, depth: Reals, width: int) -> Segments:
         return segments.take(order)
 
     alone = segments.take(free)
-    overlapping = _nearest_runs(segments.take(~free), depth[~free], width)
+    overlapping = _nearest_runs(segments.take(~free), depth[~free], tolerance[~free], width)
     visible = Segments(
         np.concatenate([alone.triangle, overlapping.triangle]),
         np.concatenate([alone.y, overlapping.y]),
@@ -248,16 +278,36 @@ def resolve(segments: Segments, depth: Reals, width: int) -> Segments:
     return visible.take(np.argsort(visible.y * width + visible.left, kind="stable"))
 
 
-def _nearest_runs(segments: Segments, depth: Reals, width: int) -> Segments:
+def _nearest_runs(segments: Segments, depth: Reals, tolerance: Reals, width: int) -> Segments:
     """Visible runs of overlapping `segments`: the nearest segment owns a pixel.
 
     A run is the longest sequence of pixels on a line with one owner. Arguments as for `resolve`.
+    The first pass finds the depth that the nearest surface has at most; the second one finds the
+    first segment that may be as near.
     """
     top = int(segments.y.min())
     pixels = (int(segments.y.max()) - top + 1) * width
     nearest = np.full(pixels, np.inf)
     none = len(segments)
     owner = np.full(pixels, none)
+    for s, pixel, here in _overlaps(segments, depth, top, width):
+        np.minimum.at(nearest, pixel, here + tolerance[s])
+    for s, pixel, here in _overlaps(segments, depth, top, width):
+        wins = here - tolerance[s] <= nearest[pixel]
+        np.minimum.at(owner, pixel[wins], s[wins])
+    first = np.flatnonzero(np.concatenate([[True], owner[1:] != owner[:-1]]))
+    end = np.concatenate([first[1:], [pixels]])
+    owned = owner[first] != none
+    first, end = first[owned], end[owned]
+    y = first // width
+    return Segments(segments.triangle[owner[first]], y + top, first - y * width, end - y * width)
+
+
+def _overlaps(
+    segments: Segments, depth: Reals, top: int, width: int
+) -> Iterator[tuple[Ints, Ints, Reals]]:
+    """All pixels of all `segments`, at most about BLOCK_PIXELS at a time: the segment's index, the
+    pixel's number from line `top` on, and the depth there, [n] each."""
     length = segments.right - segments.left
     total = np.cumsum(length)
     slope = (depth[:, 1] - depth[:, 0]) / np.maximum(length - 1, 1)
@@ -268,17 +318,5 @@ def _nearest_runs(segments: Segments, depth: Reals, width: int) -> Segments:
         s = np.repeat(np.arange(begin, stop), length[begin:stop])
         step = np.arange(len(s)) - (total[s] - length[s] - done)
         pixel = (segments.y[s] - top) * width + segments.left[s] + step
-        here = depth[s, 0] + slope[s] * step
-        before = nearest[pixel]
-        np.minimum.at(nearest, pixel, here)
-        after = nearest[pixel]
-        owner[pixel[after < before]] = none
-        wins = here == after
-        np.minimum.at(owner, pixel[wins], s[wins])
+        yield s, pixel, depth[s, 0] + slope[s] * step
         begin = stop
-    first = np.flatnonzero(np.concatenate([[True], owner[1:] != owner[:-1]]))
-    end = np.concatenate([first[1:], [pixels]])
-    owned = owner[first] != none
-    first, end = first[owned], end[owned]
-    y = first // width
-    return Segments(segments.triangle[owner[first]], y + top, first - y * width, end - y * width)

@@ -1,0 +1,278 @@
+# SPDX-License-Identifier: MIT
+"""Normals made from the faces of a mesh: one per face, or one per corner of each face."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from phong75.model.arrays import Flags, Ints, Reals
+from phong75.model.front.mesh_topology import Edges, components, orbits, weld
+from phong75.model.front.vectors import normalize
+
+#: Default crease angle, degrees: edges that bend by more than this stay sharp. The side faces of a
+#: regular prism bend by 360/n degrees: 51.4 for n = 7, 60 for n = 6. So no regular polygon is near
+#: this angle, and rounded coordinates cannot make some of its edges sharp and others smooth.
+DEFAULT_CREASE = 56.0
+
+#: A triangle is degenerate if twice its area divided by the square of its longest edge is at most
+#: this. The normal of such a triangle would be rounding noise.
+DEGENERATE_AREA = 1e-12
+
+#: Neighbouring faces whose normals differ by less than this angle, in radians, form one flat face.
+#: Coordinates of 24 bits turn the normal of a triangle of 1/1000 of the mesh's size by about this.
+FLAT = 1e-4
+
+#: A flat face keeps its own normal at a vertex if its area is this many times that of each other
+#: face there, and if it has this share of the weight by angle and area. So a chamfer up to about
+#: a quarter as wide as the face beside it leaves that face flat.
+LARGE = 4.0
+DOMINANT = 0.75
+
+#: Sums of normals are in integer multiples of this. 2**15 angles of at most pi fit 63 bits.
+QUANTUM = 2.0**-46
+
+#: Faces whose geometry is computed at a time.
+BLOCK = 1 << 13
+
+
+def face_normals(vertices: Reals, faces: Ints) -> Reals:
+    """Unit normals of the faces, float64[F, 3]; zero for degenerate faces.
+
+    vertices: float64[V, 3]. faces: int64[F, 3].
+    """
+    return normals_and_areas(vertices, faces)[0]
+
+
+def normals_and_areas(vertices: Reals, faces: Ints) -> tuple[Reals, Reals]:
+    """Unit normals of the faces, float64[F, 3], and their areas, float64[F]; zero for degenerate
+    faces. Arguments as for `face_normals`."""
+    normal, area = np.empty((len(faces), 3)), np.empty(len(faces))
+    for block, cross, longest, _ in _blocks(vertices, faces):
+        length = np.sqrt(cross[0] ** 2 + cross[1] ** 2 + cross[2] ** 2)
+        good = length > DEGENERATE_AREA
+        normal[block] = np.where(good, cross / np.where(good, length, 1.0), 0.0).T
+        area[block] = np.where(good, length * longest**2 / 2.0, 0.0)
+    return normal, area
+
+
+def _blocks(vertices: Reals, faces: Ints) -> Iterator[tuple[slice, Reals, Reals, Reals]]:
+    """The geometry of some thousand faces at a time, which fits the processor's cache.
+
+    Yields (block, cross, longest, dots). block: which faces. longest: float64[n], the largest
+    component of the sides of each. cross: float64[3, n], the cross product of two sides divided by
+    `longest`. dots: float64[3, n], at each corner the dot product of both sides there, divided by
+    the square of `longest`.
+    """
+    for begin in range(0, len(faces), BLOCK):
+        block = slice(begin, begin + BLOCK)
+        corners = np.ascontiguousarray(vertices[faces[block]].transpose(1, 2, 0))
+        sides = np.roll(corners, -1, axis=0) - corners
+        longest = np.max(np.abs(sides), axis=(0, 1))
+        (x0, y0, z0), (x1, y1, z1), (x2, y2, z2) = sides / np.where(longest > 0, longest, 1.0)
+        cross = np.stack([z0 * y2 - y0 * z2, x0 * z2 - z0 * x2, y0 * x2 - x0 * y2])
+        dots = np.stack([x0 * x2 + y0 * y2 + z0 * z2, x1 * x0 + y1 * y0 + z1 * z0,
+                         x2 * x1 + y2 * y1 + z2 * z1])  # fmt: skip
+        yield block, cross, longest, -dots
+
+
+def corner_normals(
+    vertices: Reals, faces: Ints, crease: float, smoothing: Ints | None = None
+) -> Reals:
+    """Unit normals of all corners, float64[F, 3, 3], computed from the faces alone.
+
+    The normal at a corner is the weighted mean of the normals of the faces around its vertex. Only
+    faces that are connected to the corner's face across smooth edges count (Starkey, "Shading
+    Techniques", section 3: average only what should appear smoothly connected). An edge is smooth
+    if it bends by at most `crease` degrees; 0 gives flat faces, 180 smooths every edge.
+
+    smoothing: int64[F], smoothing groups of an OBJ file or None. An edge between two faces of group
+    0 or more is smooth if both have the same group and the group is not 0; the angle does not
+    matter. Edges of faces with group -1 follow `crease`.
+
+    The weight of a face is its angle at the vertex (Thuermer and Wuethrich 1998), so that the mean
+    does not depend on how polygons were cut into triangles. A flat face that is far larger than the
+    others at a vertex keeps its own normal (see `LARGE`), so that the faces of a part stay flat
+    beside its chamfers. Vertices with equal coordinates are treated as one vertex. The order
+    of the faces does not change the result.
+    """
+    label, first = weld(vertices)
+    vertices, faces = vertices[first], label[faces]
+    flat, area = normals_and_areas(vertices, faces)
+    return corner_normals_of(vertices, faces, flat, area, Edges.of(faces), crease, smoothing)
+
+
+def corner_normals_of(
+    vertices: Reals, faces: Ints, flat: Reals, area: Reals, edges: Edges, crease: float,
+    smoothing: Ints | None = None,
+) -> Reals:  # fmt: skip
+    """As `corner_normals`, of what is known already.
+
+    vertices: float64[V, 3], no two of them equal. flat, area: of the faces, as
+    `normals_and_areas` gives them. edges: of the faces.
+    """
+    first, second = _links(vertices, faces, flat, edges)
+    face_a, face_b = first // 3, second // 3
+    cosine = np.sum(flat[face_a] * flat[face_b], axis=1)
+    smooth = cosine >= np.cos(np.radians(crease)) - 1e-12
+    if smoothing is not None:
+        a, b = smoothing[face_a], smoothing[face_b]
+        smooth = np.where((a >= 0) & (b >= 0), (a == b) & (a > 0), smooth)
+    coplanar = smooth & (cosine >= np.cos(FLAT))
+    area = _flat_areas(area, face_a[coplanar], face_b[coplanar])
+
+    group = _groups(faces, edges, first, second, smooth)
+    angle = _corner_angles(vertices, faces).reshape(-1)
+    mean = _group_means(group, angle, area, flat)
+    return np.where(np.any(mean != 0, axis=-1, keepdims=True), mean, flat[:, None, :])
+
+
+def _groups(faces: Ints, edges: Edges, first: Ints, second: Ints, smooth: Flags) -> Ints:
+    """A label for each corner, int64[3 F], equal where corners share a normal; one of the corners.
+
+    first, second: int64[n], half-edges on both sides of an edge, from `_links`. smooth: bool[n]. A
+    smooth edge links the corners of its two faces at both of its ends. Where each edge has two
+    faces of one winding, the links lead from corner to corner round a vertex; the others are added
+    one by one.
+    """
+    regular = smooth & (edges.upward[first] != edges.upward[second])
+    regular[np.count_nonzero(edges.uses == 2) :] = False
+    a, b = first[regular], second[regular]
+    following = np.full(faces.size, -1)
+    following[a], following[b] = _next(b), _next(a)
+    group = orbits(following, faces.reshape(-1))
+    others = smooth & ~regular
+    if others.any():
+        first, second = first[others], second[others]
+        low_a, high_a = _ends(first, edges.upward)
+        low_b, high_b = _ends(second, edges.upward)
+        one, other = np.concatenate([low_a, high_a]), np.concatenate([low_b, high_b])
+        group = components(faces.size, group[one], group[other])[group]
+    return group
+
+
+def _next(half: Ints) -> Ints:
+    """The next half-edge of the same face, int64[n]."""
+    return np.where(half % 3 == 2, half - 2, half + 1)
+
+
+def _ends(half: Ints, upward: Flags) -> tuple[Ints, Ints]:
+    """The corners of half-edges at their smaller and at their larger vertex, int64[n] each."""
+    following, up = _next(half), upward[half]
+    return np.where(up, half, following), np.where(up, following, half)
+
+
+def _links(vertices: Reals, faces: Ints, flat: Reals, edges: Edges) -> tuple[Ints, Ints]:
+    """Pairs of half-edges across which faces may be smooth, int64[n] each.
+
+    An edge of two faces gives one pair. The normals of all faces at one edge lie in a plane across
+    that edge. Where an edge has more faces, each is paired with the next one in the order of the
+    normals' directions, round the full turn. A chain of such pairs connects two faces exactly if
+    some chain of any pairs with the same largest angle does.
+    """
+    one, other = edges.pairs()
+    many = np.flatnonzero(edges.uses > 2)
+    if not len(many):
+        return one, other
+    uses, begin = edges.uses[many], edges.first[many]
+    edge = np.repeat(np.arange(len(many)), uses)
+    place = np.arange(uses.sum()) - np.repeat(np.cumsum(uses) - uses, uses)
+    half = edges.half[begin[edge] + place]
+    face, corner = half // 3, half % 3
+    start = vertices[faces[face, corner]]
+    end = vertices[faces[face, (corner + 1) % 3]]
+    along = normalize(np.where(edges.upward[half, None], end - start, start - end))
+    # All faces of an edge measure the direction of their normals in the axes of its first face.
+    head = np.cumsum(uses) - uses
+    axis = normalize(along[head][edge])
+    across = flat[face[head]][edge]
+    third = np.cross(axis, across)
+    turn = np.arctan2(np.sum(flat[face] * third, axis=1), np.sum(flat[face] * across, axis=1))
+    order = np.lexsort((turn, edge))
+    half = half[order]
+    following = np.arange(len(half)) + 1
+    last = np.cumsum(uses) - 1
+    following[last] = head
+    return np.concatenate([one, half]), np.concatenate([other, half[following]])
+
+
+def _flat_areas(area: Reals, a: Ints, b: Ints) -> Reals:
+    """The area of the flat face that each triangle belongs to, float64[F].
+
+    area: float64[F], of the triangles. a, b: int64[n], triangles of one flat face.
+    """
+    if not len(a):
+        return area
+    region = components(len(area), a, b)
+    members = np.flatnonzero(np.bincount(region, minlength=len(area))[region] > 1)
+    # Sorted by size within a region, so that the sum does not depend on the order of the faces.
+    members = members[np.lexsort((area[members], region[members]))]
+    start = np.flatnonzero(np.diff(region[members], prepend=-1))
+    total = np.zeros(len(area))
+    total[region[members[start]]] = np.add.reduceat(area[members], start)
+    result = area.copy()
+    result[members] = total[region[members]]
+    return result
+
+
+def _corner_angles(vertices: Reals, faces: Ints) -> Reals:
+    """Angle of each face at each of its corners, float64[F, 3], radians."""
+    angle = np.empty((len(faces), 3))
+    for block, cross, _, dots in _blocks(vertices, faces):
+        angle[block] = np.arctan2(np.sqrt(np.sum(cross * cross, axis=0)), dots).T
+    return angle
+
+
+def _group_means(group: Ints, angle: Reals, area: Reals, flat: Reals) -> Reals:
+    """The unit normal of each corner's group, float64[F, 3, 3]; zero where normals cancel out.
+
+    group: int64[3 F], the smallest corner of each corner's group. angle: float64[3 F]. area:
+    float64[F], of the flat face. flat: float64[F, 3].
+    """
+    number = np.cumsum(group == np.arange(len(group))) - 1
+    group = number[group]
+    count = int(number[-1]) + 1
+    weight = np.where(_outweighed(group, angle, np.repeat(area, 3), count), 0.0, angle)
+    weight = weight.reshape(-1, 3)
+    sums = np.stack(
+        [_total(group, (weight * flat[:, axis, None]).reshape(-1), count) for axis in range(3)],
+        axis=-1,
+    )
+    # Normals of opposite faces can cancel out but for the quantum.
+    size = np.max(np.abs(sums), axis=-1, keepdims=True)
+    mean = np.where(size > 2.0**12, normalize(sums), 0.0)
+    return mean[group].reshape(-1, 3, 3)
+
+
+def _outweighed(group: Ints, angle: Reals, area: Reals, count: int) -> Flags:
+    """Which corners do not count, bool[n], because a far larger flat face keeps its own normal.
+
+    group: int64[n], 0 to `count` - 1. angle, area: float64[n], at the corner and of its flat face.
+    """
+    full = np.zeros(count)
+    np.maximum.at(full, group, area)
+    relative = area / full[group]
+    small = relative <= 1.0 / LARGE
+    candidate = np.zeros(count, bool)
+    candidate[group[small]] = True
+    candidate[group[~small & (relative < 1.0)]] = False
+    if not candidate.any():
+        return small & False
+    corners = np.flatnonzero(candidate[group])
+    group, angle, relative = group[corners], angle[corners], relative[corners]
+    share = angle * relative
+    dominant = _total(group, share * (relative == 1.0), count) >= DOMINANT * _total(
+        group, share, count
+    )
+    small[:] = False
+    small[corners] = dominant[group] & (relative < 1.0)
+    return small
+
+
+def _total(group: Ints, values: Reals, count: int) -> Reals:
+    """The sum of `values` (float64[n]) in each of `count` groups, in units of QUANTUM. Integers add
+    up without rounding, so the sum is the same in any order."""
+    result = np.zeros(count, np.int64)
+    np.add.at(result, group, np.rint(values * (1.0 / QUANTUM)).astype(np.int64))
+    return result.astype(np.float64)
