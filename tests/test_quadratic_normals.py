@@ -258,6 +258,25 @@ def test_clipping_does_not_move_a_normal():
     assert corners_of_cut == pytest.approx((whole[15, 15] + whole[16, 16]) / 2, abs=1e-6)
 
 
+@pytest.mark.parametrize("rule", ["quadratic", "quadratic_vlachos"])
+def test_a_triangle_that_passes_the_eye_has_the_normals_of_its_part(rule):
+    """In perspective, cut at the near plane: the part in the picture has the normals of the whole
+    triangle, quadratic in space, at its corners and where the middles of its edges are seen."""
+    corners = np.array([(-4.0, 0, -1), (4, 0, -1), (0, 14, -1.2)])  # the eye is above y = 0
+    normals = normalize(np.array([[(0.3, 0, 0.9), (-0.3, 0.1, 0.9), (0, 0.3, 0.9)]]))
+    mesh = Mesh(corners, np.array([[0, 1, 2]]), normals)
+    axes = view_axes((0, -1, 0.1), (0, 0, 1))
+    scene = picture([mesh], rule, (64, 64))
+    scene.camera = Camera(
+        "perspective", axes, np.array([0, 5.0, -1]), np.array([0, 3.0, 0]), fov=60.0, near=0.5
+    )
+    made = front_end(scene)
+    value, _ = along(made.frame.spans, made.exact.start, made.exact.step, made.exact.bend)
+    assert len(value) > 300 and not illegal_spans(made.frame, QUADRATIC).any()
+    length = np.linalg.norm(value, axis=1)
+    assert length.min() > 0.8 and length.max() < 1.1
+
+
 def test_what_no_span_can_hold_becomes_single_pixels():
     """A bend or a change of 2 and more per pixel."""
     segment = scene_to_spans.Segments(*(np.array([v]) for v in (0, 0, 0, 4)))
