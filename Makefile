@@ -17,6 +17,7 @@ quote = '$(subst ','\'',$(1))'
 
 # Which variables each target takes. Any other is refused, before anything is run.
 variables_run := SCENE SIZE TECHNIQUE CONFIG FPS CLOCK_MHZ PRUNE SPANS OUT
+variables_compare := SCENE SIZE CLOCK_MHZ OUT RECORD
 variables_prune := SCENE SIZE SEEDS GATES RECORD
 variables_scenes := RECORD
 variables_sweep := AREA ROUTE RECORD
@@ -77,13 +78,17 @@ all-setup:
 
 # -- commands --------------------------------------------------------------------------------------
 
-.PHONY: run prune scenes sweep tessellation stability adversarial report synth netlist formal activity \
+.PHONY: run compare prune scenes sweep tessellation stability adversarial report synth netlist formal activity \
   waves bench export configs
 
 run: setup
 	@$(PHONG75) run $(size) $(call option,--technique,TECHNIQUE) $(config) $(call option,--fps,FPS) \
 	  $(call option,--clock,CLOCK_MHZ) $(call option,--prune,PRUNE) $(call option,--spans,SPANS) \
 	  $(call option,--out,OUT) $(call argument,SCENE)
+
+compare: setup
+	@$(PHONG75) compare $(size) $(call option,--clock,CLOCK_MHZ) $(call option,--out,OUT) $(record) \
+	  $(call argument,SCENE)
 
 prune: $(if $(filter all,$(call setting,SCENE)),hardware-setup,setup)
 	@$(PHONG75) prune $(size) $(call option,--seeds,SEEDS) $(call flag,--gates,GATES) $(record) \
@@ -182,6 +187,8 @@ help:
 	@echo '  make run           SCENE=teapot through RTL and model, compared; build/NAME/'
 	@echo '                     SIZE=640x480 TECHNIQUE=phong|gouraud|flat CONFIG=NAME FPS=30'
 	@echo '                     CLOCK_MHZ=200 PRUNE=1|SCENE SPANS=FILE OUT=DIR'
+	@echo '  make compare       SCENE=teapot flat, Gouraud, Phong ... on one sheet; build/NAME-compare/'
+	@echo '                     SIZE=640x480 CLOCK_MHZ=200 OUT=DIR'
 	@echo '  make prune         what SCENE needs of the pipeline; SCENE=all: what that saves'
 	@echo '                     SIZE=640x480 SEEDS=3 GATES=1'
 	@echo '  make scenes        all bundled scenes at three sizes'

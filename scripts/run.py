@@ -233,7 +233,7 @@ def run(request: RunRequest, simulate: Simulate, steps: Steps) -> dict:
     simulator does not work.
     """
     config = request.config
-    with _results(request.out) as folder:
+    with results_folder(request.out) as folder:
         stimulus = _front_end(request, folder, steps)
         expected, pruned_differ = _twin(stimulus, config, steps)
         simulation = _simulation(stimulus, simulate, steps)
@@ -278,7 +278,7 @@ def _where(first: metrics.Mismatch) -> str:
 
 
 @contextmanager
-def _results(out: Path) -> Iterator[Path]:
+def results_folder(out: Path) -> Iterator[Path]:
     """A folder whose files move into `out` once the body is through; else `out` stays as it was.
 
     Raises InputError if `out` cannot be a folder to write to, or if another run writes to it.
