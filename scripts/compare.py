@@ -33,7 +33,7 @@ from phong75.model.studies.true_scene import NoTrueSurfaceError, TrueObject, Tru
 from phong75.scripts import console, options, recorded
 from phong75.scripts.console import Steps
 from phong75.scripts.docs import tables
-from phong75.scripts.run import results_folder
+from phong75.scripts.run import first_difference, results_folder
 from phong75.sim.design import PACKAGE
 from phong75.sim.frame.run_frame import SimJob, SimResult, simulate_jobs
 
@@ -85,6 +85,16 @@ class Shaded:
     codes: np.ndarray
 
     @property
+    def covered(self) -> np.ndarray:
+        """Where there is a pixel, bool[width * height]."""
+        return (self.codes >= 0).all(axis=1)
+
+    @property
+    def map_covered(self) -> np.ndarray:
+        """The same as bool[height, width]."""
+        return self.covered.reshape(self.frame.height, self.frame.width)
+
+    @property
     def picture(self) -> np.ndarray:
         """The RTL's picture, uint8[height, width, 3]."""
         pixels = self.simulation.pixels
@@ -102,6 +112,75 @@ class Difference:
     values: np.ndarray
     metrics: dict[str, Any]
     pixels: int
+
+
+# -- what the shadings are compared with -----------------------------------------------------------
+
+
+def difference(shaded: Shaded, value: np.ndarray, compared: np.ndarray) -> Difference:
+    """How far the RTL's codes are from `value` (float64[n, 3], n = width * height) on the pixels
+    `compared` (bool[n]) that the RTL has shaded."""
+    compared = compared & shaded.covered
+    values = np.full(len(value), np.nan)
+    values[compared] = np.abs(shaded.codes - value)[compared].max(axis=1)
+    return Difference(
+        values.reshape(shaded.frame.height, shaded.frame.width),
+        metrics.error_metrics(shaded.codes[compared], value[compared]),
+        int(compared.sum()),
+    )
+
+
+@dataclass(frozen=True)
+class TrueSurface:
+    """The surfaces that the shapes of a scene stand for.
+
+    seen: int64[n], the object that each pixel of the meshes shows. picture: in the scene's light.
+    """
+
+    scene: Scene
+    objects: list[TrueObject]
+    seen: np.ndarray
+    picture: TruePicture
+
+    def difference(self, shaded: Shaded) -> Difference:
+        """How far `shaded` is from the surface, where mesh and surface show the same object."""
+        true = self.picture
+        if shaded.shading.lighting:
+            true = true_scene.true_picture(shaded.shading.lit(self.scene), self.objects)
+        return difference(shaded, true.value, (true.item == self.seen) & (true.item >= 0))
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {"true_surface": True, "what": [item.how for item in self.objects]}
+
+    def column(self, shaded: Shaded) -> Basis:
+        """The last column of the sheet."""
+        frame, value = shaded.frame, self.picture.value
+        seen = np.flatnonzero(np.isfinite(value).all(axis=1))
+        y, x = np.divmod(seen, frame.width)
+        picture = pictures.canvas(frame, x, y, metrics.rounded(value[seen]))
+        lines = ["float64, rounded", *dict.fromkeys(item.how for item in self.objects)]
+        return Basis("true surface", picture, shaded.map_covered, lines)
+
+
+@dataclass(frozen=True)
+class FromPhong:
+    """The Phong column, for a scene that has no true surface. reason: why it has none."""
+
+    reason: str
+    phong: Shaded
+
+    def difference(self, shaded: Shaded) -> Difference:
+        """How far the codes of `shaded` are from Phong's."""
+        return difference(shaded, self.phong.codes.astype(np.float64), self.phong.covered)
+
+    def as_dict(self) -> dict[str, Any]:
+        """For JSON."""
+        return {"true_surface": False, "what": [self.reason]}
+
+    def column(self, shaded: Shaded) -> Basis:
+        """The last column of the sheet."""
+        return Basis("", None, shaded.map_covered, [f"no true surface: {self.reason}"])
 
 
 # -- the stages of a comparison --------------------------------------------------------------------
@@ -134,53 +213,12 @@ def shade(scene: Scene, shading: Shading, steps: Steps) -> Shaded:
     )  # fmt: skip
 
 
-def difference(shaded: Shaded, value: np.ndarray, compared: np.ndarray) -> Difference:
-    """How far the RTL's codes are from `value` (float64[n, 3], n = width * height) on the pixels
-    `compared` (bool[n]) that the RTL has shaded."""
-    compared = compared & (shaded.codes >= 0).all(axis=1)
-    values = np.full(len(value), np.nan)
-    values[compared] = np.abs(shaded.codes - value)[compared].max(axis=1)
-    return Difference(
-        values.reshape(shaded.frame.height, shaded.frame.width),
-        metrics.error_metrics(shaded.codes[compared], value[compared]), int(compared.sum()),
-    )  # fmt: skip
-
-
-@dataclass
-class TrueSurface:
-    """The true surface of a scene, as a basis of differences."""
-
-    scene: Scene
-    objects: list[TrueObject]
-    seen: np.ndarray  # int64[n], the object that each pixel of the meshes shows
-
-    def __post_init__(self):
-        self._pictures: dict[str, TruePicture] = {}
-
-    def picture(self, shading: Shading = PHONG) -> TruePicture:
-        """The surface in the light of `shading`."""
-        key = shading.name if shading.lighting else ""
-        if key not in self._pictures:
-            lit = shading.lit(self.scene)
-            self._pictures[key] = true_scene.true_picture(lit, self.objects)
-        return self._pictures[key]
-
-    def difference(self, shaded: Shaded) -> Difference:
-        """How far `shaded` is from the surface, where mesh and surface show the same object."""
-        true = self.picture(shaded.shading)
-        return difference(shaded, true.value, (true.item == self.seen) & (true.item >= 0))
-
-
-def true_surface(request: CompareRequest, scene: Scene, steps: Steps) -> TrueSurface | str:
-    """The true surface of `scene`, or why there is none."""
+def true_surface(request: CompareRequest, scene: Scene, steps: Steps) -> TrueSurface:
+    """The true surface of `scene`. Raises NoTrueSurfaceError, InputError."""
     with steps.step("true surface"):
-        try:
-            objects = true_scene.true_objects(request.scene)
-        except NoTrueSurfaceError as reason:
-            return str(reason)
-        true = TrueSurface(scene, objects, true_scene.objects_seen(PHONG.lit(scene)))
-        true.picture()
-    return true
+        objects = true_scene.true_objects(request.scene)
+        seen = true_scene.objects_seen(PHONG.lit(scene))
+        return TrueSurface(scene, objects, seen, true_scene.true_picture(PHONG.lit(scene), objects))
 
 
 def recorded_hardware(config: Config) -> dict[str, Any]:
@@ -258,10 +296,11 @@ def failures(report: dict[str, Any]) -> list[str]:
 def notes(report: dict[str, Any]) -> list[str]:
     """What a reader of the table should know, a line each."""
     basis, rows = report["basis"], report["shadings"]
+    what = "; ".join(dict.fromkeys(basis["what"]))
     if basis["true_surface"]:
-        lines = [f"true surface: {'; '.join(dict.fromkeys(basis['objects']))}"]
+        lines = [f"true surface: {what}"]
     else:
-        lines = [f"no true surface ({basis['reason']}): differences are from {PHONG.title}"]
+        lines = [f"no true surface ({what}): differences are from {PHONG.title}"]
     compared, shaded = rows[0]["difference"]["pixels"], rows[0]["pixels"]
     if compared < shaded:
         lines.append(
@@ -274,31 +313,17 @@ def notes(report: dict[str, Any]) -> list[str]:
 
 
 def _sheet(
-    folder: Path, report: dict[str, Any], shaded: list[Shaded], apart: list[Difference],
-    true: TrueSurface | str,
-) -> comparison_sheet.Box:  # fmt: skip
-    """Write the sheet."""
-    frame = shaded[0].frame
+    path: Path, report: dict[str, Any], shaded: list[Shaded], apart: list[Difference], basis: Basis
+) -> comparison_sheet.Box:
+    """Write the sheet; returns the detail that is enlarged."""
+    against = f"the {basis.title}" if basis.title else PHONG.title
     heading = "{}, {} × {}: ".format(report["scene"], *report["size"])
-    if isinstance(true, TrueSurface):
-        heading += "every shading through the RTL, and its difference from the true surface"
-        value = true.picture().value
-        seen = np.isfinite(value).all(axis=1)
-        y, x = np.divmod(np.flatnonzero(seen), frame.width)
-        picture = pictures.canvas(frame, x, y, metrics.rounded(value[seen]))
-        lines = ["float64, rounded", *dict.fromkeys(report["basis"]["objects"])]
-    else:
-        heading += f"every shading through the RTL, and its difference from {PHONG.title}"
-        picture, lines = None, [f"no true surface: {true}"]
-    title = "true surface" if isinstance(true, TrueSurface) else ""
+    heading += f"what came out of the RTL of each shading, and its difference from {against}"
     columns = [
         Column(one.shading.title, one.picture, way.values, lines)
         for one, way, lines in zip(shaded, apart, _captions(report), strict=True)
     ]
-    basis = Basis(
-        title, picture, (shaded[0].codes >= 0).all(axis=1).reshape(frame.height, -1), lines
-    )
-    return comparison_sheet.write_sheet(folder / "sheet.png", heading, columns, basis)
+    return comparison_sheet.write_sheet(path, heading, columns, basis)
 
 
 def _captions(report: dict[str, Any]) -> list[list[str]]:
@@ -309,7 +334,8 @@ def _captions(report: dict[str, Any]) -> list[list[str]]:
         [
             f"difference: RMS {row['difference']['rms_lsb']:.2f}, 99.9 % "
             f"{row['difference']['p999_lsb']:.1f}, largest {row['difference']['max_lsb']:.1f} LSB",
-            f"{tables.grouped(row['cycles'])} cycles: {tables.number(row['fps'])} frames/s at {clock}",
+            f"{tables.grouped(row['cycles'])} cycles; at {clock} {tables.number(row['fps'])} "
+            "frames/s",
             f"{tables.number(row['hardware']['dsp'])} multipliers, "
             f"{tables.number(row['hardware'][key])} {title}, "
             f"{tables.number(row['hardware']['ff'])} flip-flops",
@@ -330,40 +356,39 @@ def compare(request: CompareRequest, steps: Steps) -> dict[str, Any]:
     """
     with results_folder(request.out) as folder:
         scene = load_scene(request.scene, request.size)
-        true = true_surface(request, scene, steps)
         shaded = [shade(scene, shading, steps) for shading in SHADINGS]
-        if isinstance(true, TrueSurface):
-            apart = [true.difference(one) for one in shaded]
-        else:
+        basis: TrueSurface | FromPhong
+        try:
+            basis = true_surface(request, scene, steps)
+        except NoTrueSurfaceError as error:
             phong = next(one for one in shaded if one.shading is PHONG)
-            compared = (phong.codes >= 0).all(axis=1)
-            apart = [difference(one, phong.codes.astype(float), compared) for one in shaded]
-        rows = [_row(one, way, request.clock_hz) for one, way in zip(shaded, apart, strict=True)]
-        found = isinstance(true, TrueSurface)
+            basis = FromPhong(str(error), phong)
+        apart = [basis.difference(one) for one in shaded]
         report = {
             "schema": SCHEMA,
             "scene": Path(request.scene).stem,
             "size": [scene.width, scene.height],
             "clock_hz": request.clock_hz,
-            "basis": {
-                "true_surface": found,
-                "objects": [item.how for item in true.objects] if found else [],
-                "reason": "" if found else true,
-            },
-            "shadings": rows,
+            "basis": basis.as_dict(),
+            "shadings": [
+                _row(one, way, request.clock_hz) for one, way in zip(shaded, apart, strict=True)
+            ],
         }
         with steps.step("sheet"):
-            report["detail"] = list(_sheet(folder, report, shaded, apart, true))
-        text = json.dumps(report | {"versions": run_report.versions()}, indent=2, allow_nan=False)
-        (folder / "comparison.json").write_text(f"{text}\n", encoding="utf-8")
+            column = basis.column(shaded[0])
+            detail = _sheet(folder / "sheet.png", report, shaded, apart, column)
+        report["detail"] = list(detail)
+        versions = {"versions": run_report.versions()}
+        text = json.dumps(report | versions, indent=2, allow_nan=False) + "\n"
+        (folder / "comparison.json").write_text(text, encoding="utf-8")
         if scene.interpolation != PHONG.interpolation:
             console.note(
-                f"the scene's interpolation = {scene.interpolation} is not looked at: each "
-                "shading has its own"
+                f"interpolation = {scene.interpolation} of the scene is not used: each shading "
+                "has its own"
             )
         for one in shaded:
             if one.comparison.first:
-                console.note(f"{one.shading.title}: first difference: {one.comparison.first}")
+                console.note(f"{one.shading.title}: {first_difference(one.comparison.first)}")
     return report
 
 

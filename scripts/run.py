@@ -253,13 +253,13 @@ def _explain(stimulus: Stimulus, comparison: metrics.Comparison, config: Config)
     for reason in pruning.missing(stimulus.frame, stimulus.built, config):
         console.note(f"left out, but needed: {reason}")
     if comparison.first:
-        console.note(_where(comparison.first))
+        console.note(first_difference(comparison.first))
         by_technique = config in TECHNIQUES.values()  # `locate` knows the stages of these
         if comparison.first.expected and stimulus.built == config and by_technique:
             console.note(locate(stimulus.frame, comparison.first.index, config))
 
 
-def _where(first: metrics.Mismatch) -> str:
+def first_difference(first: metrics.Mismatch) -> str:
     """A line that says where two streams part."""
 
     def show(pixel):

@@ -29,7 +29,7 @@ _PANEL = 320  # width of a panel that needs no scaling; smaller frames are enlar
 _MOST = 640  # largest width of a panel; larger frames are reduced
 _LEFT, _GAP, _RIGHT = 26, 8, 8  # names of the rows; between panels; right margin
 _HEAD, _TITLE, _LINE = 34, 22, 15  # heading of the sheet; title of a column; a line of text
-_BAR, _KEY = 14, 18  # height of the scale; of a line of the key
+_BAR, _LOWEST = 14, 120  # height of the scale; least height of a row
 _FONT = 8.0  # points
 
 #: An enlarged detail shows this part of the width and of the height.
@@ -121,9 +121,9 @@ def write_sheet(path: str | Path, heading: str, columns: Sequence[Column], basis
         rgb[difference <= PERFECT_LSB] = to_rgb(WITHIN_HALF)
         rgb[np.isnan(difference)] = to_rgb(_APART)
         rgb[~basis.shaded] = to_rgb(BACKGROUND)
-        return np.uint8(255 * rgb + 0.5)
+        return (255 * rgb + 0.5).astype(np.uint8)
 
-    lines = max(len(column.lines) for column in (*columns, basis))
+    lines = max(len(basis.lines), *(len(column.lines) for column in columns))
     height, width = basis.shaded.shape
     sheet = _Grid(width, height, len(columns) + 1, lines)
     sheet.write(heading)
@@ -162,7 +162,9 @@ class _Grid:
         size = np.array([width, height]) * self._zoom // self._reduced
         self._panel = np.maximum(size, 1)
         self._unit = max(1.0, float(self._panel[0]) / _PANEL)
-        self._step = np.ceil(self._panel + self._unit * _GAP)
+        # However narrow or low a frame is, the texts beside its panel have room.
+        cell = np.maximum(self._panel, self._unit * np.array([_PANEL, _LOWEST]))
+        self._step = np.ceil(cell + self._unit * _GAP)
         above = self._unit * (_HEAD + _TITLE)
         below = self._unit * (lines * _LINE + _GAP)
         self._origin = np.ceil(np.array([self._unit * _LEFT, above]))
@@ -172,7 +174,7 @@ class _Grid:
         self._figure = Figure(figsize=self._full / _DPI, dpi=_DPI, facecolor="white")
         self._canvas = FigureCanvasAgg(self._figure)
         for row, name in enumerate(_ROWS):
-            x, y = self._origin + self._step * [0, row] + self._panel * [0, 0.5]
+            x, y = self._origin + self._step * [0, row + 0.5]
             self._text(x - self._unit * _GAP, y, name, rotation=90, va="center", ha="right")
 
     def write(self, heading: str) -> None:
@@ -216,7 +218,7 @@ class _Grid:
         from matplotlib.patches import Patch
 
         left, top = self._origin + self._step * [column, 1]
-        width, unit = self._panel[0], self._unit
+        width, unit = self._step[0] - self._unit * _GAP, self._unit
         box = self._rectangle(left + 4 * unit, top + 18 * unit, width - 18 * unit, unit * _BAR)
         bar = self._figure.colorbar(ScalarMappable(norm, shades), cax=box, orientation="horizontal")
         ticks = [t for d in (0.1, 1, 10, 100) for t in (d, 2 * d, 5 * d)]

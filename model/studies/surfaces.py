@@ -127,7 +127,8 @@ class Torus:
         for _ in range(2):  # Newton's method, except where the ray is nearly tangent
             value, slope = _polynomial(quartic, t), _polynomial(quartic * [4, 3, 2, 1, 0], t, 4)
             t = t - np.where(np.abs(slope) > 1e-6, value / np.where(slope == 0, 1, slope), 0.0)
-        return hit, self.normal(origin + t[:, None] * back)
+        # Rays that miss get the normal of a point on the torus; on the axis there is none.
+        return hit, self.normal(np.where(hit[:, None], origin + t[:, None] * back, (1, 0, 1)))
 
     def turn(self, mesh: Mesh, tangent: Reals) -> Reals:
         """See `Surface`: difference of normals off the surface, which `normal` defines as well."""
