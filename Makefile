@@ -187,7 +187,7 @@ help:
 	@echo '  make run           SCENE=teapot through RTL and model, compared; build/NAME/'
 	@echo '                     SIZE=640x480 TECHNIQUE=phong|gouraud|flat CONFIG=NAME FPS=30'
 	@echo '                     CLOCK_MHZ=200 PRUNE=1|SCENE SPANS=FILE OUT=DIR'
-	@echo '  make compare       SCENE=teapot flat, Gouraud, Phong ... on one sheet; build/NAME-compare/'
+	@echo '  make compare       SCENE=teapot in every shading on one sheet; build/NAME-compare/'
 	@echo '                     SIZE=640x480 CLOCK_MHZ=200 OUT=DIR'
 	@echo '  make prune         what SCENE needs of the pipeline; SCENE=all: what that saves'
 	@echo '                     SIZE=640x480 SEEDS=3 GATES=1'
