@@ -178,7 +178,9 @@ class _Grid:
             self._text(x - self._unit * _GAP, y, name, rotation=90, va="center", ha="right")
 
     def write(self, heading: str) -> None:
-        """Write lines above all columns."""
+        """Write lines above all columns, and how much whole pictures are reduced."""
+        if self._reduced > 1:
+            heading += f"; whole pictures reduced {self._reduced} ×"
         self._text(
             self._origin[0], self._unit * _GAP, heading, size=1.15, va="top", linespacing=1.4
         )

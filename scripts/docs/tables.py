@@ -379,7 +379,7 @@ def comparison_rows(report: dict[str, Any]) -> list[list[str]]:
         return [what, *(number(value, digits) for value in values)]
 
     lines = [
-        ["", *(row["title"] for row in rows)],
+        ["what", *(row["title"] for row in rows)],
         line("RTL ≠ model, pixels", (row["mismatches"] for row in rows)),
         line("cycles", (row["cycles"] for row in rows)),
         line(f"frames/s at {report['clock_hz'] / 1e6:g} MHz", (row["fps"] for row in rows)),
