@@ -78,15 +78,20 @@ class Progress:
 
     def _print(self) -> None:
         with self._lock:
-            elapsed = time.monotonic() - self._start
-            part = self._weight_done / self._weight_all if self._weight_all else 1.0
-            running = [test.partition("::")[2] or test for test in self._running]
-            left = f"about {elapsed * (1 - part) / part / 60:.1f} min left" if part > 0.02 else ""
-            what = f"; running {', '.join(running)}" if running else ""
-            print(
-                f"{self._done} of {self._all} tests, {elapsed / 60:.1f} min, {left}{what}",
-                file=sys.__stderr__, flush=True,
-            )  # fmt: skip
+            now = time.monotonic()
+            elapsed = now - self._start
+            # A running test counts for as long as it has run, up to what it took in the record.
+            done = self._weight_done + sum(
+                min(now - begin, self.weight(test)) for test, begin in self._running.items()
+            )
+            part = done / self._weight_all if self._weight_all else 1.0
+            parts = [f"{self._done} of {self._all} tests", f"{elapsed / 60:.1f} min"]
+            if part > 0.02:
+                parts.append(f"about {elapsed * (1 - part) / part / 60:.1f} min left")
+            line = ", ".join(parts)
+            if running := [test.partition("::")[2] or test for test in self._running]:
+                line += f"; running {', '.join(running)}"
+            print(line, file=sys.__stderr__, flush=True)
 
     @pytest.hookimpl(trylast=True)
     def pytest_runtest_logstart(self, nodeid):
