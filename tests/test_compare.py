@@ -22,7 +22,7 @@ from phong75.model.studies.comparison_sheet import (
     where_they_differ,
     write_sheet,
 )
-from phong75.model.studies.shadings import PHONG, SHADINGS
+from phong75.model.studies.shadings import PHONG, SHADINGS, Shading
 from phong75.model.studies.surfaces import Sphere, Torus
 from phong75.model.studies.true_scene import NoTrueSurfaceError
 from phong75.scripts import compare, main, recorded
@@ -313,6 +313,19 @@ def test_each_shading_has_its_own_interpolation(start, write, tmp_path):
     assert lines == ["interpolation = normalized_edges of the scene is not used: each shading "
                      "has its own"]  # fmt: skip
     assert linear[2]["difference"] != linear[3]["difference"]
+
+
+def test_a_new_shading_is_one_line(start, write, tmp_path, monkeypatch):
+    """It brings a light of its own, and is compared with the surface in that light."""
+    from_above = {"light": np.array([0.0, 0.0, 1.0])}
+    line = Shading("above", "light from above", PHONG.config, lighting=from_above)
+    monkeypatch.setattr(compare, "SHADINGS", (*SHADINGS, line))
+    code, shown, lines = start(write(SMALL))
+    assert (code, lines) == (0, [])
+    phong, above = (found(tmp_path)["shadings"][k] for k in (2, 4))
+    assert above["title"] == "light from above" and above["hardware"] == phong["hardware"]
+    assert above["difference"] != phong["difference"]
+    assert above["difference"]["rms_lsb"] < 2 * phong["difference"]["rms_lsb"]
 
 
 def test_a_mesh_is_compared_with_phong(start, write, tmp_path):
