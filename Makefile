@@ -18,6 +18,7 @@ quote = '$(subst ','\'',$(1))'
 # Which variables each target takes. Any other is refused, before anything is run.
 variables_run := SCENE SIZE TECHNIQUE CONFIG UNITS FPS CLOCK_MHZ PRUNE SPANS OUT
 variables_convert := SCENE OUT
+variables_compare := SCENE SIZE CLOCK_MHZ OUT RECORD
 variables_prune := SCENE SIZE SEEDS GATES RECORD
 variables_scenes := RECORD
 variables_sweep := AREA ROUTE RECORD
@@ -78,7 +79,8 @@ all-setup:
 
 # -- commands --------------------------------------------------------------------------------------
 
-.PHONY: run convert prune scenes sweep tessellation stability adversarial report synth netlist formal activity \
+.PHONY: run convert compare prune scenes sweep tessellation stability adversarial report synth \
+  netlist formal activity \
   waves bench export configs
 
 run: setup
@@ -88,6 +90,10 @@ run: setup
 
 convert: setup
 	@$(PHONG75) convert $(call option,--out,OUT) $(call argument,SCENE)
+
+compare: setup
+	@$(PHONG75) compare $(size) $(call option,--clock,CLOCK_MHZ) $(call option,--out,OUT) $(record) \
+	  $(call argument,SCENE)
 
 prune: $(if $(filter all,$(call setting,SCENE)),hardware-setup,setup)
 	@$(PHONG75) prune $(size) $(call option,--seeds,SEEDS) $(call flag,--gates,GATES) $(record) \
@@ -186,6 +192,8 @@ help:
 	@echo '  make run           SCENE=teapot through RTL and model, compared; build/NAME/'
 	@echo '                     SIZE=640x480 TECHNIQUE=phong|gouraud|flat CONFIG=NAME FPS=30'
 	@echo '                     UNITS=1 CLOCK_MHZ=200 PRUNE=1|SCENE SPANS=FILE OUT=DIR'
+	@echo '  make compare       SCENE=teapot in every shading on one sheet; build/NAME-compare/'
+	@echo '                     SIZE=640x480 CLOCK_MHZ=200 OUT=DIR'
 	@echo '  make convert       SCENE=FILE.scn of lecture notes to OUT=FILE.toml'
 	@echo '  make prune         what SCENE needs of the pipeline; SCENE=all: what that saves'
 	@echo '                     SIZE=640x480 SEEDS=3 GATES=1'

@@ -121,6 +121,26 @@ def run(
 
 
 @app.command()
+def compare(
+    scene: options.Scene = "teapot",
+    size: options.AnySize = None,
+    clock: options.Clock = 200,
+    out: options.Out = None,
+    record: options.Record = False,
+) -> int:
+    """Shade a scene in every way, side by side on one sheet.
+
+    Flat, Gouraud, Phong and others, each through its RTL: pictures, cycles, hardware, error, and
+    the difference from the true surface. Writes sheet.png and comparison.json into --out, by
+    default build/NAME-compare. Exit code 1 if a pixel differs or an error bound is missed.
+    --record is for the scene and the size that the documentation shows.
+    """
+    from phong75.scripts import compare as engine
+
+    return engine.main(engine.request(scene, size, clock, out), record)
+
+
+@app.command()
 def prune(
     scene: Annotated[
         str,

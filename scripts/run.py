@@ -259,7 +259,7 @@ def run(request: RunRequest, simulate: Simulate, steps: Steps) -> dict:
     another run; OSError if a file cannot be written; BuildError or SimulationError if the
     simulator does not work.
     """
-    with _results(request.out) as folder:
+    with results_folder(request.out) as folder:
         stimulus = _front_end(request, folder, steps)
         expected, pruned_differ = _twin(stimulus, steps)
         simulation = _simulation(stimulus, simulate, steps)
@@ -283,7 +283,7 @@ def _explain(stimulus: Stimulus, comparison: metrics.Comparison) -> None:
     for reason in pruning.missing(stimulus.frame, stimulus.built, config):
         console.note(f"left out, but needed: {reason}")
     if comparison.first:
-        console.note(_where(comparison.first))
+        console.note(first_difference(comparison.first))
         # `locate` knows the stages of these, with normals of either order.
         linear = replace(config, name=config.technique, normal_order=1)
         by_technique = (
@@ -295,7 +295,7 @@ def _explain(stimulus: Stimulus, comparison: metrics.Comparison) -> None:
             console.note(locate(stimulus.frame, comparison.first.index, config))
 
 
-def _where(first: metrics.Mismatch) -> str:
+def first_difference(first: metrics.Mismatch) -> str:
     """A line that says where two streams part."""
 
     def show(pixel):
@@ -314,7 +314,7 @@ def _where(first: metrics.Mismatch) -> str:
 
 
 @contextmanager
-def _results(out: Path) -> Iterator[Path]:
+def results_folder(out: Path) -> Iterator[Path]:
     """A folder whose files move into `out` once the body is through; else `out` stays as it was.
 
     Raises InputError if `out` cannot be a folder to write to, or if another run writes to it.

@@ -536,6 +536,7 @@ def test_make_passes_arguments_on():
     ("arguments", "says"),
     [
         (["run", "SIZEE=3x3"], "`make run` has no variable SIZEE; it takes SCENE SIZE "),
+        (["compare", "SIZ=3x3"], "`make compare` has no variable SIZ; it takes SCENE SIZE "),
         (["lint", "RECORD=1"], "`make lint` has no variable RECORD; it takes none"),
         (["synth", "RECORD=yes"], "RECORD is `yes`, not 0 or 1"),
         (["synth", "CONFIG=flat", "AREA=1"], "`make synth` has no variable AREA"),
@@ -555,6 +556,7 @@ def test_make_does_not_look_at_the_environment():
 #: The variables of each target that forwards: those with a value, and those that are 0 or 1.
 FORWARDED = {
     "run": ("SCENE SIZE TECHNIQUE CONFIG FPS CLOCK_MHZ PRUNE SPANS OUT", ""),
+    "compare": ("SCENE SIZE CLOCK_MHZ OUT", "RECORD"),
     "prune": ("SCENE SIZE SEEDS", "GATES RECORD"),
     "scenes": ("", "RECORD"),
     "sweep": ("ROUTE", "AREA RECORD"),

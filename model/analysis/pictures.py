@@ -40,8 +40,8 @@ _PANEL = 400  # least side of a panel; smaller frames are enlarged to about this
 _LEFT, _GAP, _BAR, _RIGHT = 58, 10, 14, 72  # y axis; gap, colour bar, labels of the bar
 _HEAD, _TITLE, _BOTTOM = 52, 30, 80  # title of the picture, of a panel; x axis and key below it
 
-_BACKGROUND = "white"  # no span
-_PERFECT = "#d3d7dc"  # at most 1/2 LSB
+BACKGROUND = "white"  # no span
+WITHIN_HALF = "#d3d7dc"  # at most 1/2 LSB
 _ABOVE = "#e8590c"  # more than 1/2 LSB, in the map of |error|
 _BROKEN = "#0057d8"  # more than the derived bound
 
@@ -130,12 +130,12 @@ def write_error_map(
 
     shape = (frame.height, frame.width)
     magnitude = _place(np.full(shape, np.nan), x, y, beyond + PERFECT_LSB)
-    key = [(_BACKGROUND, "no span")]
+    key = [(BACKGROUND, "no span")]
     if not to_worst:
         key.append((_ABOVE, "more than ½ LSB"))
     sheet.draw(
         0, magnitude, "|error| = |code − 255 S|, worst of three channels", key,
-        cmap=_colours("viridis", over=None if to_worst else _ABOVE),
+        cmap=colours("viridis", over=None if to_worst else _ABOVE),
         vmin=0, vmax=worst if to_worst else PERFECT_LSB,
     ).set_label("LSB", fontsize=9)  # fmt: skip
 
@@ -144,7 +144,7 @@ def write_error_map(
     top = max(1000 * (worst - PERFECT_LSB if bound is None else limit), 10 * _LEAST_MILLI)
     # The value beyond the scale stands for all errors above the bound.
     shown = np.where(milli > 1000 * limit, 2 * top, np.maximum(milli, _LEAST_MILLI))
-    key = [(_BACKGROUND, "no span"), (_PERFECT, "at most ½ LSB")]
+    key = [(BACKGROUND, "no span"), (WITHIN_HALF, "at most ½ LSB")]
     if bound is not None:
         key.append((_BROKEN, f"more than the bound; pixels: {_count(broken)}"))
     enlarged = f", each drawn {side} × {side}" if side > 1 else ""
@@ -152,7 +152,7 @@ def write_error_map(
         1, np.where(milli > 0, shown, np.nan),
         "|error| − ½ LSB, what exceeds perfect rounding; "
         f"pixels: {_count(above)}{enlarged}", key,
-        cmap=_colours("YlOrRd", start=0.4, over=None if bound is None else _BROKEN),
+        cmap=colours("YlOrRd", start=0.4, over=None if bound is None else _BROKEN),
         norm=LogNorm(_LEAST_MILLI, top), behind=~np.isnan(magnitude),
     )  # fmt: skip
     decades = [10.0**k for k in range(6) if 10.0**k < top / 1.8]
@@ -214,9 +214,9 @@ class _Sheet:
         left = self._cell[0] * (index % self._columns) + unit * _LEFT
         top = self._cell[1] * (index // self._columns) + unit * (_HEAD + _TITLE)
         axes = self._axes(left, top, width, height)
-        axes.set_facecolor(_BACKGROUND)
+        axes.set_facecolor(BACKGROUND)
         if behind is not None:
-            grey = ListedColormap([_PERFECT])
+            grey = ListedColormap([WITHIN_HALF])
             axes.imshow(np.where(behind, 0.0, np.nan), cmap=grey, interpolation="nearest")
         image = axes.imshow(picture, cmap=cmap, interpolation="nearest", **scale)
         axes.set_title(title, fontsize=10, loc="left")
@@ -252,7 +252,7 @@ class _Sheet:
         return self.figure.add_axes(tuple(box / np.tile(self._full, 2)))
 
 
-def _colours(name: str, start: float = 0.0, over: str | None = None) -> Colormap:
+def colours(name: str, start: float = 0.0, over: str | None = None) -> Colormap:
     """The colour map `name` of matplotlib from `start` (0 to 1) on.
 
     over: the colour of values beyond the scale, which the colour bar then shows at its end.

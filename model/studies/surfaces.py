@@ -49,6 +49,17 @@ class Surface(Protocol):
         """
 
 
+class Solid(Surface, Protocol):
+    """A surface that is met by any ray, also by the diverging rays of a perspective camera."""
+
+    def see(self, origin: Reals, back: Reals, farthest: float = np.inf) -> tuple[Flags, Reals]:
+        """See `Surface`; every ray may have a direction of its own.
+
+        back: float64[3] or float64[n, 3], unit vectors towards the eye. farthest: only points
+        origin + t back with t <= farthest count; 0 if `origin` is the eye itself.
+        """
+
+
 @dataclass(frozen=True)
 class Sphere:
     """The unit sphere; its meshes have half as many rings as segments."""
@@ -60,12 +71,14 @@ class Sphere:
         """See `Surface`."""
         return shapes.sphere(1.0, level, level // 2)
 
-    def see(self, origin: Reals, back: Reals) -> tuple[Flags, Reals]:
-        """See `Surface`."""
-        along = origin @ back
+    def see(self, origin: Reals, back: Reals, farthest: float = np.inf) -> tuple[Flags, Reals]:
+        """See `Solid`: the nearer of the two intersections that is not beyond `farthest`."""
+        along = np.sum(origin * back, axis=1)
         foot = origin - along[:, None] * back
         square = 1.0 - np.sum(foot * foot, axis=1)
-        return square >= 0, foot + np.sqrt(np.maximum(square, 0.0))[:, None] * back
+        half = np.sqrt(np.maximum(square, 0.0))
+        half = np.where(half - along <= farthest, half, -half)
+        return (square >= 0) & (half - along <= farthest), foot + half[:, None] * back
 
     def turn(self, mesh: Mesh, tangent: Reals) -> Reals:
         """See `Surface`: the normal of the unit sphere is the point itself."""
@@ -89,29 +102,33 @@ class Torus:
         ring = points[..., :2] / np.linalg.norm(points[..., :2], axis=-1, keepdims=True)
         return normalize(points - np.concatenate([ring, np.zeros_like(ring[..., :1])], axis=-1))
 
-    def see(self, origin: Reals, back: Reals) -> tuple[Flags, Reals]:
-        """See `Surface`: the largest real root of (|P|^2 + 1 - r^2)^2 = 4 (x^2 + y^2)."""
-        a, b = origin @ back, np.sum(origin * origin, axis=1) + 1.0 - self.tube**2
-        xy, direction = origin[:, :2], back[:2]
+    def see(self, origin: Reals, back: Reals, farthest: float = np.inf) -> tuple[Flags, Reals]:
+        """See `Solid`: the largest real root, up to `farthest`, of
+        (|P|^2 + 1 - r^2)^2 = 4 (x^2 + y^2)."""
+        a = np.sum(origin * back, axis=1)
+        b = np.sum(origin * origin, axis=1) + 1.0 - self.tube**2
+        xy, direction = origin[:, :2], back[..., :2]
         one = np.ones_like(a)
         quartic = np.stack(
             [
-                one, 4 * a, 4 * a * a + 2 * b - 4 * direction @ direction,
-                4 * a * b - 8 * (xy @ direction), b * b - 4 * np.sum(xy * xy, axis=1),
+                one, 4 * a, 4 * a * a + 2 * b - 4 * np.sum(direction * direction, axis=-1),
+                4 * a * b - 8 * np.sum(xy * direction, axis=1),
+                b * b - 4 * np.sum(xy * xy, axis=1),
             ], axis=1,
         )  # fmt: skip
         companion = np.zeros((len(a), 4, 4))
         companion[:, 1:, :3] = np.eye(3)
         companion[:, 0] = -quartic[:, 1:]
         roots = np.linalg.eigvals(companion)
-        real = np.abs(roots.imag) < 1e-6
+        real = (np.abs(roots.imag) < 1e-6) & (roots.real <= farthest)
         t = np.max(np.where(real, roots.real, -np.inf), axis=1)
         hit = np.isfinite(t)
         t = np.where(hit, t, 0.0)
         for _ in range(2):  # Newton's method, except where the ray is nearly tangent
             value, slope = _polynomial(quartic, t), _polynomial(quartic * [4, 3, 2, 1, 0], t, 4)
             t = t - np.where(np.abs(slope) > 1e-6, value / np.where(slope == 0, 1, slope), 0.0)
-        return hit, self.normal(origin + t[:, None] * back)
+        # Rays that miss get the normal of a point on the torus; on the axis there is none.
+        return hit, self.normal(np.where(hit[:, None], origin + t[:, None] * back, (1, 0, 1)))
 
     def turn(self, mesh: Mesh, tangent: Reals) -> Reals:
         """See `Surface`: difference of normals off the surface, which `normal` defines as well."""

@@ -92,7 +92,7 @@ def shade(normal: Reals, scene: Scene, material: Material) -> Reals:
     ones = np.ones((len(normal), 1))
     return reference.shade(
         apply_matrix(axes, normal), ones * (cp * d), ones * (cp * (1 - d)),
-        ones * weight, ones[:, 0] * material.n, eye, False,
+        ones * weight, ones[:, 0] * material.n, eye, scene.two_sided,
     )  # fmt: skip
 
 

@@ -144,6 +144,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "lut-counts": lambda: tables.lut_counts(_synthesis("resources")),
     "sweep": lambda: tables.sweep(_sweep()),
     "clocks": lambda: tables.clocks(_clocks()),
+    "comparison": lambda: tables.comparison(_record("compare")),
     "surfaces": lambda: tables.surfaces(_record("tessellation")),
     "quadratic-normals": lambda: tables.quadratic_normals(_record("tessellation")),
     "error-families": lambda: tables.error_families(_record("stability")["errors"]),

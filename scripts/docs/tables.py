@@ -413,6 +413,45 @@ def highlight_ratios(meshes: Iterable[dict[str, Any]]) -> list[float]:
     return [by["gouraud"][name] / by["phong"][name] for by in _by_shape(meshes).values()]
 
 
+# -- shadings side by side -------------------------------------------------------------------------
+
+
+def comparison_rows(report: dict[str, Any]) -> list[list[str]]:
+    """The table of a comparison: its header, then a line a figure, with a cell for each shading."""
+    rows = report["shadings"]
+    hardware = [row["hardware"] for row in rows]
+    logic_key, logic_title = logic(hardware)
+
+    def line(what: str, values: Iterable[float | None], digits: int = 0) -> list[str]:
+        return [what, *(number(value, digits) for value in values)]
+
+    lines = [
+        ["what", *(row["title"] for row in rows)],
+        line("RTL ≠ model, pixels", (row["mismatches"] for row in rows)),
+        line("cycles", (row["cycles"] for row in rows)),
+        line(f"frames/s at {report['clock_hz'] / 1e6:g} MHz", (row["fps"] for row in rows)),
+        line("multipliers", (of["dsp"] for of in hardware)),
+        line(logic_title, (of[logic_key] for of in hardware)),
+        line("flip-flops", (of["ff"] for of in hardware)),
+    ]
+    for what, key in (("largest", "max_lsb"), ("derived bound", "bound_lsb"), ("RMS", "rms_lsb")):
+        lines.append(line(f"error at the ports, {what}, LSB", (r["error"][key] for r in rows), 3))
+    basis = "the true surface"
+    if not report["basis"]["true_surface"]:
+        lines.append(line(f"from {basis}, LSB", (None for _ in rows)))
+        basis = "Phong"
+    for what, key in (("RMS", "rms_lsb"), ("99.9 %", "p999_lsb"), ("largest", "max_lsb")):
+        values = (row["difference"][key] for row in rows)
+        lines.append(line(f"from {basis}, {what}, LSB", values, 2))
+    return lines
+
+
+def comparison(report: dict[str, Any]) -> str:
+    """The same as Markdown."""
+    header, *rows = comparison_rows(report)
+    return markdown(header, rows)
+
+
 # -- stability -------------------------------------------------------------------------------------
 
 

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
 """One page of all results, build/report/index.html: `phong75 report`.
 
-The page shows pictures, cycles, error over run time, stability, the error budget and the records of
-the long runs, from the JSON and CSV files of the other targets. Scenes without a current result are
-run first. The page is one file that needs no network: pictures are WebP without loss, plotly.js is
-packed with gzip. Together that is less than LIMIT_BYTES. A part whose data is missing names the
-command that makes it. Exit code: 0; 2 if the page could not be made.
+The page shows pictures, shadings side by side, cycles, error over run time, stability, the error
+budget and the records of the long runs, from the JSON and CSV files of the other targets. Scenes
+without a current result are run first. The page is one file that needs no network: pictures are
+WebP, all but one without loss, and plotly.js is packed with gzip. Together that is less than
+LIMIT_BYTES. A part whose data is missing names the command that makes it. Exit code: 0; 2 if the
+page could not be made.
 """
 
 from __future__ import annotations
@@ -38,10 +39,10 @@ from phong75.model.front.scene import bundled_scenes, load_scene
 from phong75.model.spans import read_spans
 from phong75.model.studies import methods, pareto, tessellation
 from phong75.model.studies.charts import TECHNIQUE_NAMES
-from phong75.scripts import console, recorded
+from phong75.scripts import compare, console, recorded
 from phong75.scripts import run as run_scene
 from phong75.scripts.console import Steps
-from phong75.scripts.docs.tables import HardwareRow, hardware_rows
+from phong75.scripts.docs.tables import HardwareRow, comparison_rows, hardware_rows
 from phong75.scripts.scene_results import SCHEMA as RESULTS
 from phong75.scripts.stability import SCHEMA as STABILITY
 from phong75.scripts.studies import artifact_runs
@@ -131,11 +132,12 @@ def size_text(size) -> str:
     return "{} × {}".format(*size)
 
 
-def data_uri(path: Path) -> str:
-    """The picture in `path` as a data URI: WebP, with the same pixels. Raises OSError."""
+def data_uri(path: Path, lossless: bool = True) -> str:
+    """The picture in `path` as a data URI: WebP, `lossless` or smaller. Raises OSError."""
     packed = BytesIO()
+    how = {"lossless": True, "quality": 75, "method": 4} if lossless else {"quality": 80}
     with Image.open(path) as picture:
-        picture.convert("RGB").save(packed, "WEBP", lossless=True, quality=75, method=4)
+        picture.convert("RGB").save(packed, "WEBP", **how)
     return "data:image/webp;base64," + base64.b64encode(packed.getvalue()).decode()
 
 
@@ -209,6 +211,48 @@ def run_missing(names: list[str], build: Path) -> None:
         console.note(f"{name}, {technique} ({k + 1} of {len(todo)})")
         request = run_scene.request(name, config=TECHNIQUES[technique], out=out)
         run_scene.run(request, run_frame.simulate, Steps())
+
+
+def compare_missing(build: Path) -> None:
+    """Compare the shadings of `compare.SHOWN` if there is no result in `build`, or one older than
+    the sources.
+
+    Raises as `scripts.compare.compare`; a check that failed is said on the page.
+    """
+    scene, size = compare.SHOWN
+    path = build / f"{scene}-compare" / "comparison.json"
+    if not path.is_file() or path.stat().st_mtime < newest_source():
+        console.note(f"{scene}, all shadings")
+        compare.compare(compare.request(scene, size, out=path.parent), Steps())
+
+
+@dataclass
+class Comparison:
+    """What the page shows of `compare.SHOWN`: its report, the sheet as a data URI, the lines of its
+    table, and a line for each check that failed."""
+
+    report: dict
+    sheet: str
+    rows: list[list[str]]
+    notes: list[str]
+    failures: list[str]
+
+    @property
+    def size(self) -> str:
+        """Width and height of the pictures, in pixels."""
+        return size_text(self.report["size"])
+
+
+def comparison(build: Path) -> Comparison | None:
+    """What `compare_missing` left in `build`; None if nothing."""
+    folder = build / f"{compare.SHOWN[0]}-compare"
+    found = load(folder / "comparison.json", compare.SCHEMA)
+    if found is None:
+        return None
+    return Comparison(
+        found, data_uri(folder / "sheet.png", lossless=False), comparison_rows(found),
+        compare.notes(found), compare.failures(found),
+    )  # fmt: skip
 
 
 def scene_result(name: str, build: Path) -> SceneResult | None:
@@ -594,7 +638,8 @@ def page(build: Path = BUILD) -> str:
     )  # fmt: skip
     environment.filters["code"] = code
     return environment.get_template("report.html.j2").render(
-        scenes=scenes, results=results, stability=stability, precision=precision,
+        scenes=scenes, comparison=comparison(build), results=results, stability=stability,
+        precision=precision,
         clock_note=clock_note(precision) if precision else "",
         precision_frames=precision_frames() if precision else [],
         tessellation=meshes, tessellation_size=size_text(tessellation.SIZE),
@@ -612,6 +657,7 @@ def page(build: Path = BUILD) -> str:
 def main(build: Path = BUILD) -> int:
     """Make the page; returns the exit code. Raises InputError, OSError, and as `run_missing`."""
     run_missing(bundled_scenes(), build)
+    compare_missing(build)
     text = page(build)
     path = build / "report" / "index.html"
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -30,8 +30,8 @@ from phong75.sim.frame.run_frame import SimResult
 RED, BLUE = (200, 30, 20), (20, 40, 200)
 SCENES = ("pyramid", "sphere")
 SECTIONS = (
-    "scenes", "cycles", "features", "precision", "tessellation", "arguments", "stability",
-    "budget", "hardware",
+    "scenes", "shadings", "cycles", "features", "precision", "tessellation", "arguments",
+    "stability", "budget", "hardware",
 )  # fmt: skip
 browser = pytest.mark.browser
 
@@ -78,6 +78,7 @@ def build(tmp_path_factory):
     for name, colour in (("gouraud", RED), ("flat", BLUE)):
         shutil.copytree(build / "sphere", build / f"sphere-{name}")
         solid(build / f"sphere-{name}" / "frame.png", colour)
+    report.compare_missing(build)
     (build / "sweep").mkdir()
     write_csv(build / "sweep" / "precision.csv", PRECISION)
     write_csv(build / "sweep" / "tessellation.csv", [
@@ -145,7 +146,7 @@ def test_the_numbers_are_those_of_the_runs(html, build):
 def test_what_is_missing_names_its_command(tmp_path, monkeypatch):
     monkeypatch.setattr(recorded, "FOLDER", tmp_path)
     html = report.page(tmp_path)
-    for target in ("run", "scenes", "sweep", "tessellation", "stability", "synth"):
+    for target in ("run", "compare", "scenes", "sweep", "tessellation", "stability", "synth"):
         command = f"make {target}"
         assert f"{target}:" in (PACKAGE / "Makefile").read_text()
         assert f"Not run yet: <code>{command}" in html, command
@@ -156,7 +157,8 @@ def test_every_part_names_its_scene_and_size(html):
         text = html.partition(f'<section id="{part}"')[2].partition("</section>")[0]
         assert '<p class="shown">' in text, part
     for text in (
-        "pyramid <span class=\"note\">160 × 120</span>", "Every bundled scene at 160×120.",
+        "pyramid <span class=\"note\">160 × 120</span>", "cone, 320 × 240, as in Figs. 1, 4",
+        "Every bundled scene at 160×120.",
         "teapot 320 × 240 (", "highlights 384 × 128 (", "facets 960 × 160 (",
         "sphere; 640 × 480.", "Scenes: torus; 640 × 480.", "30 frames of 320 × 240",
         "a square; 200 × 200", "3840 × 2160", "pyramid, 160 × 120: bound",
@@ -213,7 +215,7 @@ def test_the_page_of_all_scenes_weighs_less_than_5_mb(build, tmp_path):
     for name in ("mach", "flicker", "orientation"):
         write_picture(tmp_path / "sweep" / f"{name}.png", noise)
     text = report.page(tmp_path)
-    assert text.count("data:image/webp") == 5 * len(bundled_scenes()) + 3
+    assert text.count("data:image/webp") == 5 * len(bundled_scenes()) + 3 + 1
     assert len(text.encode()) < report.LIMIT_BYTES == 5_000_000
 
 
@@ -246,6 +248,7 @@ def test_the_clock_is_named():
 
 def test_a_broken_file_is_named(build, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(report, "run_missing", lambda *_: None)
+    monkeypatch.setattr(report, "compare_missing", lambda *_: None)
     (tmp_path / "stability").mkdir()
     (tmp_path / "sweep").mkdir()
     for name, text, message in (
@@ -263,6 +266,7 @@ def test_a_broken_file_is_named(build, tmp_path, capsys, monkeypatch):
 
 def test_the_page_is_one_file(build, capsys, monkeypatch):
     monkeypatch.setattr(report, "run_missing", lambda *_: None)
+    monkeypatch.setattr(report, "compare_missing", lambda *_: None)
     assert report.main(build) == 0
     assert [p.name for p in (build / "report").iterdir()] == ["index.html"]
     assert "report/index.html: " in capsys.readouterr().out
@@ -282,6 +286,29 @@ def test_scenes_without_a_current_result_are_run(build, monkeypatch, capsys):
     monkeypatch.setattr(report, "newest_source", lambda: 4e9)
     report.run_missing(["sphere"], build)
     assert ran[2:] == [("sphere", technique) for technique in ("phong", "gouraud", "flat")]
+
+
+def test_the_comparison_is_made_if_there_is_no_current_one(build, monkeypatch):
+    ran = []
+    monkeypatch.setattr(report.compare, "compare", lambda request, steps: ran.append(request))
+    report.compare_missing(build)
+    assert not ran
+    monkeypatch.setattr(report, "newest_source", lambda: 4e9)
+    report.compare_missing(build)
+    assert [(r.scene, r.size, r.out) for r in ran] == [
+        (*report.compare.SHOWN, build / "cone-compare")
+    ]
+
+
+def test_a_comparison_that_failed_is_seen(build, tmp_path):
+    shutil.copytree(build / "cone-compare", tmp_path / "cone-compare")
+    path = tmp_path / "cone-compare" / "comparison.json"
+    found = json.loads(path.read_text())
+    assert found["shadings"][1]["mismatches"] == 0
+    found["shadings"][1]["mismatches"] = 7
+    path.write_text(json.dumps(found))
+    part = report.page(tmp_path).partition('<section id="shadings"')[2].partition("</section>")[0]
+    assert 'verdict bad">failed' in part and "Gouraud: 7 of " in part
 
 
 def test_a_scene_that_cannot_be_run_ends_the_report(build, monkeypatch):
