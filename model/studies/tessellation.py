@@ -17,7 +17,7 @@ import numpy as np
 
 from phong75.model.analysis import reference
 from phong75.model.arrays import Reals
-from phong75.model.config import DEFAULT, TECHNIQUES
+from phong75.model.config import TECHNIQUES
 from phong75.model.frame import Frame
 from phong75.model.front import scene_to_spans, visibility
 from phong75.model.front.camera import Camera, light_frame, view_axes
@@ -78,11 +78,10 @@ def shade(normal: Reals, scene: Scene, material: Material) -> Reals:
     """
     axes, eye = light_frame(scene.light, scene.camera.axes[2])
     cp, d = np.array(material.color), material.d
-    weight = material.weight(np.linspace(0, 1, DEFAULT.weight_points))
     ones = np.ones((len(normal), 1))
     return reference.shade(
         apply_matrix(axes, normal), ones * (cp * d), ones * (cp * (1 - d)),
-        ones * weight, ones[:, 0] * material.n, eye, False,
+        material.weight, material.highlight.at, eye, False,
     )  # fmt: skip
 
 
