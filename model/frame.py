@@ -48,7 +48,8 @@ class MaterialTable:
 
     With lights (`Config.sums_lights`) ambient is the sum of what needs no direction, e + ka Ia and
     ka La of every light; diffuse is kd Ld of the first light, and highlight: int64[M, 3] is ks Ls
-    of the first light in `coefficient`. highlight is None where it is 1 everywhere.
+    of the first light in `coefficient`. highlight is None where it is 1 everywhere and
+    ambient + diffuse is at most 1: then one light needs no more than eq. (3).
 
     Reflectance by table (see `phong75.model.reflectance`; None where no material has one):
     curve: int64[M, S, 2], {left, step} of each line of the curve of cos(s), in `coefficient`; the
@@ -210,31 +211,46 @@ def with_reflectance(config: Config, frame: Frame) -> Config:
 
 
 def fitted(config: Config, frame: Frame, units: int = 1) -> Config:
-    """`config` with the lights, the curves and the jumps that `frame` has: as it is for one white
-    light, Cp <= 1 and powers of cos(s).
+    """`config` with the lights, the curves and the jumps that `frame` has: as it is for one light
+    with white highlights, Cp <= 1 and powers of cos(s).
 
     units: shading units side by side. Raises InputError if there are more units than lights, or if
     `config` has a method or a feature that is for one light, or see `with_reflectance`.
     """
     config = with_reflectance(config, frame)
-    table = frame.materials
-    colours = [table.highlight, *(light.highlight for light in frame.further)]
+    first = frame.materials.highlight
+    colours = [first, *(light.highlight for light in frame.further)]
     coloured = any(c is not None and (c != config.coefficient.one).any() for c in colours)
-    beyond = (table.ambient + table.diffuse > config.coefficient.one).any()
     if config.technique != "phong":
         if units > 1:
             raise InputError(f"{config.technique} shading has no units: it shades vertices")
         return config
-    if not (coloured or beyond or frame.further or units > 1):
+    if first is None and not frame.further and units == 1:
         return config
+    if units > frame.lights:
+        lights = f"{frame.lights} light{'s' if frame.further else ''}"
+        raise InputError(f"{units} units for {lights}: a unit more than lights has nothing to do")
     suffix = f"_lights_{frame.lights}" + (f"_units_{units}" if units > 1 else "")
     try:
         return replace(
             config, name=config.name + suffix, lights=frame.lights, units=units,
-            highlight_colour=bool(coloured or (beyond and not frame.further)),
+            highlight_colour=coloured or not frame.further,
         )  # fmt: skip
     except ValueError as error:
-        raise InputError(f"{error}; lights of the frame: {frame.lights}") from None
+        raise InputError(f"a sum over lights is needed, but {error}") from None
+
+
+def with_lights(config: Config, frame: Frame) -> Config:
+    """`config` with the curves and the jumps of `frame`; also with its lights (see `fitted`), if
+    `config` does not sum lights.
+
+    Raises InputError if `frame` has more lights than `config`, or `config` cannot sum lights.
+    """
+    if not config.sums_lights:
+        return fitted(config, frame)
+    if frame.lights > config.lights:
+        raise InputError(f"{frame.lights} lights in a build for {config.lights}")
+    return with_reflectance(config, frame)
 
 
 @dataclass(repr=False)

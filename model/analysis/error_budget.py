@@ -7,7 +7,9 @@ bound of the whole.
 
 Notation: errors are absolute unless called relative. |h| = 1 + eta. w = (hz Yn, hz Xn - hx Zn) are
 the components of the cross product of the unit normal and the half vector h, so that the versine is
-v = 1 - cos(s) = 2 |w|**2.
+v = 1 - cos(s) = 2 |w|**2. With several lights, 1/|N| is that of the first light's normal N0 for all
+of them; `reach` is the largest |N|/|N0| of a further light over the pixels of a frame, 1 but for
+the rounding at the ports, and None for the first light.
 """
 
 from __future__ import annotations
@@ -18,7 +20,7 @@ import numpy as np
 
 from phong75.model.arrays import ArrayLike, Ints, Reals
 from phong75.model.config import DEFAULT, Config, Format
-from phong75.model.frame import Frame
+from phong75.model.frame import Frame, with_lights
 from phong75.model.quadratic_spans import MARGIN_BITS
 
 
@@ -142,6 +144,36 @@ def length(config: Config) -> float:
     return inverse_sqrt(config) + root_operand(config)
 
 
+def held_length(config: Config) -> float:
+    """Relative error of 1/|N0| where it scales another light's normal.
+
+    The errors of `length`, and the mantissas of N0, whose length differs from |N0| by at most
+    `direction`; N0 itself is scaled by the length of its own mantissas.
+    """
+    return (1 + length(config)) / (1 - direction(config)) - 1
+
+
+def reaches(frame: Frame) -> list[float]:
+    """`reach` of each further light of `frame`, at least 1.
+
+    Lengths are computed in float64, whose error the margin of 2**-40 covers.
+    """
+    spans = frame.spans
+    count = np.maximum(spans["length"], 1).astype(np.int64)
+    span = np.repeat(np.arange(len(spans)), count)
+    k = (np.arange(len(span)) - np.repeat(np.cumsum(count) - count, count))[:, None]
+
+    def squared(start: Ints, step: Ints) -> Reals:
+        return np.square((start[span] + k * step[span]).astype(np.float64)).sum(axis=1)
+
+    first = squared(spans["start"], spans["step"])
+    found = []
+    for light in frame.further:
+        ratio = squared(light.start, light.step)[first > 0] / first[first > 0]
+        found.append(max(1.0, float(np.sqrt(ratio.max(initial=1.0)))) * (1 + 2.0**-40))
+    return found
+
+
 def squares(frame: Frame, config: Config) -> float | None:
     """Relative error of the interpolated squares of `quadratic_spans`, over all spans of `frame`.
 
@@ -173,8 +205,11 @@ def root_of_square(square: float, config: Config) -> float:
     return (1 + length(config)) / np.sqrt(1 - square) - 1
 
 
-def cosine(config: Config, square: float = 0.0) -> float:
+def cosine(config: Config, square: float = 0.0, reach: float | None = None) -> float:
     """Error of cos(i) = Zn: direction, length, and the final rounding or, at 1, the clamp.
+
+    For a further light the mantissas are relative to N0. They are rounded by half an LSB, with one
+    bit less where a component is longer than the word; both are at most `direction` times `reach`.
 
     `quadratic_spans` aligns Zn to a word below 2 and |N| to [1, 2). The error is then half an LSB
     of this word times the largest root, 1; or, where Zn is clamped, a whole LSB plus the possible
@@ -185,17 +220,22 @@ def cosine(config: Config, square: float = 0.0) -> float:
         stretch = 1 / np.sqrt(1 - square)
         clamped = (word + 2 * (stretch - 1)) * stretch / (2 - word / 2)
         return clamped * (1 + length(config)) + root_of_square(square, config) + config.cosine.lsb
+    if reach is not None:
+        return reach * (direction(config) + held_length(config)) + config.cosine.lsb
     return direction(config) + length(config) + config.cosine.lsb
 
 
-def half_vector_cross(half_vector: ArrayLike, config: Config) -> tuple[float, float]:
+def half_vector_cross(
+    half_vector: ArrayLike, config: Config, reach: float | None = None
+) -> tuple[float, float]:
     """Error of w as two parts (relative, absolute); half_vector: its codes (hx, hz).
 
     Relative: the length of the unit normal, and |h| - 1.
     Absolute, for `dot_first`: the direction; the components of the cross product of a mantissa (1/2
     or longer), which are rounded to one bit less; and their rounding after the scale.
     Absolute, else: the direction (the map N -> w has the norm |h|); the rounded components of N,
-    one of which may be clamped at 1 by a whole LSB; and the rounding of the two components of w.
+    one of which may be clamped at 1 by a whole LSB (each of them where `reach` lets two be 1); and
+    the rounding of the two components of w.
     """
     h = config.half_vector.real(half_vector)
     norm = float(np.hypot(*h))
@@ -205,8 +245,13 @@ def half_vector_cross(half_vector: ArrayLike, config: Config) -> tuple[float, fl
         rounding = np.sqrt(2) * (config.mantissa.lsb / 0.5 + half)
         return length(config) + abs(norm - 1), float(norm * direction(config) + rounding)
     components = half * max(np.hypot(2 * hz, hx + hz), np.hypot(hz, hx + hz + max(hx, hz)))
-    absolute = norm * direction(config) + components + np.sqrt(2) * half
-    return length(config) + abs(norm - 1), float(absolute)
+    if reach is None:
+        absolute = norm * direction(config) + components + np.sqrt(2) * half
+        return length(config) + abs(norm - 1), float(absolute)
+    if reach > 1.4:
+        components *= 2
+    absolute = reach * norm * direction(config) + components + np.sqrt(2) * half
+    return held_length(config) + abs(norm - 1), float(absolute)
 
 
 def quadratic_versine(v: ArrayLike, config: Config, square: float) -> Reals:
@@ -232,7 +277,10 @@ def quadratic_versine(v: ArrayLike, config: Config, square: float) -> Reals:
     return 2 * total + config.versine.lsb
 
 
-def versine(v: ArrayLike, half_vector: ArrayLike, config: Config, square: float = 0.0) -> Reals:
+def versine(
+    v: ArrayLike, half_vector: ArrayLike, config: Config, square: float = 0.0,
+    reach: float | None = None,
+) -> Reals:  # fmt: skip
     """Error of the versine v = 2 |w|**2 (float array, 0 to 1).
 
     An error dw of |w| changes |w|**2 by 2 |w| dw + dw**2; then v is rounded. half_vector: codes
@@ -240,7 +288,7 @@ def versine(v: ArrayLike, half_vector: ArrayLike, config: Config, square: float 
     """
     if config.normal_method == "quadratic_spans":
         return quadratic_versine(v, config, square)
-    relative, absolute = half_vector_cross(half_vector, config)
+    relative, absolute = half_vector_cross(half_vector, config, reach)
     w = np.sqrt(np.asarray(v) / 2)
     dw = relative * w + absolute
     return 2 * (2 * w * dw + dw**2) + _round(config.versine)
@@ -299,7 +347,10 @@ def specular_power(n: float, config: Config) -> float:
     return specular_power_tables(n, config)
 
 
-def power(n: float, half_vector: ArrayLike, config: Config, square: float = 0.0) -> float:
+def power(
+    n: float, half_vector: ArrayLike, config: Config, square: float = 0.0,
+    reach: float | None = None,
+) -> float:  # fmt: skip
     """Error of cos(s)**n: the error dv of v carried through the power, and `specular_power`.
 
     v is divided into steps. Each step contributes n c**(n-1) dv with the largest c = cos(s) and the
@@ -307,19 +358,19 @@ def power(n: float, half_vector: ArrayLike, config: Config, square: float = 0.0)
     see `versine`.
     """
     v = np.linspace(0, 1, 1025) ** 2  # dense near the highlight
-    dv = versine(v[1:], half_vector, config, square)
+    dv = versine(v[1:], half_vector, config, square, reach)
     c = np.minimum(1 - v[:-1] + dv, 1)
     return float(np.max(n * c ** (n - 1) * dv)) + specular_power(n, config)
 
 
-def weight(points: Ints, config: Config, square: float = 0.0) -> float:
+def weight(points: Ints, config: Config, square: float = 0.0, reach: float | None = None) -> float:
     """Error of W(i): the steepest line of the table times the error of Zn, and the final rounding.
 
     points: int[P], codes of W in `Config.coefficient`. square: see `squares`.
     """
     real = config.coefficient.real(points)
     steepest = float(np.abs(np.diff(real)).max()) * (len(real) - 1)
-    return steepest * cosine(config, square) + _round(config.weight)
+    return steepest * cosine(config, square, reach) + _round(config.weight)
 
 
 def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[BudgetRow]:
@@ -329,6 +380,8 @@ def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[BudgetRo
     `quadratic_spans` ValueError is raised if `squares` has no bound.
     """
     white = (1 << config.colour_bits) - 1
+    if config.sums_lights:
+        return light_rows(material, frame, config, reaches(frame))
     if config.technique != "phong":
         cut = BudgetRow(
             "cut of S", config.intensity.lsb, "interpolation is exact, S is truncated once"
@@ -401,6 +454,44 @@ def rows(material: int, frame: Frame, config: Config = DEFAULT) -> list[BudgetRo
     ]
 
 
+def light_rows(material: int, frame: Frame, config: Config, reach: list[float]) -> list[BudgetRow]:
+    """The budget of one `material` of a frame with lights: the errors of all lights are added for
+    the colour in which their sum is largest. reach: of each further light."""
+    white = (1 << config.colour_bits) - 1
+    table, real = frame.materials, config.coefficient.real
+    n = float(config.exponent.real(table.exponent[material]))
+    points = table.weight[material]
+    w = float(real(points).max())
+    diffuse, specular = np.zeros(3), np.zeros(3)
+    for number, its_reach in enumerate([None, *reach]):
+        light = frame.light(number, config)
+        diffuse += real(light.diffuse[material]) * cosine(config, reach=its_reach)
+        if w > 0:
+            error = w * power(n, light.half_vector, config, reach=its_reach)
+            error += weight(points, config, reach=its_reach)
+            if config.highlight_colour:
+                error += _round(config.highlight)
+            specular += real(light.highlight[material]) * error
+    worst = int(np.argmax(diffuse + specular))
+    terms = [
+        BudgetRow("diffuse terms", float(diffuse[worst]), "kd Ld times the error of cos(i)"),
+        BudgetRow(
+            "specular terms", float(specular[worst]),
+            "ks Ls times the errors of W(i), of cos(s)^n and of their product's rounding",
+        ),
+        BudgetRow("cut of I", config.intensity.lsb, "the sum is whole, and truncated once"),
+    ]  # fmt: skip
+    total = white * sum(row.bound for row in terms) + 0.5
+    return [
+        BudgetRow("direction", direction(config), "mantissas of a normal, radians"),
+        BudgetRow("length, first light", length(config), "1/sqrt and its operand, relative"),
+        BudgetRow("length, other lights", held_length(config), "and the first light's mantissas"),
+        BudgetRow("specular power", specular_power(n, config), f"tables, n = {n:g}"),
+        *terms,
+        BudgetRow("code", total, f"LSB: {white} times the terms, and the final rounding"),
+    ]
+
+
 def derived(config: Config, n: float) -> bool:
     """Whether a bound is derived for the methods of `config` and the exponent `n`."""
     power_method = config.power_method == "tables" or (
@@ -414,10 +505,15 @@ def bound_lsb(frame: Frame, config: Config = DEFAULT) -> float | None:
 
     None if no bound is derived for a method of `config` (`derived`) or for the spans (`squares`).
     """
+    config = with_lights(config, frame)
     used = np.unique(frame.spans["material"]).tolist()
     exponents = config.exponent.real(frame.materials.exponent[used])
     if not all(derived(config, n) for n in exponents.tolist()):
         return None
     if config.normal_method == "quadratic_spans" and squares(frame, config) is None:
         return None
+    if config.sums_lights:
+        reach = reaches(frame)
+        lights = (light_rows(m, frame, config, reach)[-1].bound for m in used)
+        return max(lights, default=0.5)
     return max((rows(m, frame, config)[-1].bound for m in used), default=0.5)

@@ -10,7 +10,7 @@ import numpy as np
 
 from phong75.model.arrays import Flags, Ints
 from phong75.model.config import DEFAULT, Config
-from phong75.model.frame import Frame, InputError, fitted
+from phong75.model.frame import Frame, with_lights
 from phong75.model.twin.core.normalizer import zero
 from phong75.model.twin.core.phong_unit import interpolate, phong_unit
 from phong75.model.twin.core.span_walker import pixel_count, walk
@@ -52,18 +52,6 @@ def colours(frame: Frame, span: Ints, k: Ints, config: Config) -> Ints:
     if config.spans_carry_squares:
         return quadratic_unit(frame, span, k, config)
     return phong_unit(frame, span, k, config)
-
-
-def with_lights(config: Config, frame: Frame) -> Config:
-    """`config` if it sums lights, else with the lights of `frame` (see `frame.fitted`).
-
-    Raises InputError if `frame` has more lights than `config`, or `config` cannot sum lights.
-    """
-    if not config.sums_lights:
-        return fitted(config, frame)
-    if frame.lights > config.lights:
-        raise InputError(f"{frame.lights} lights in a build for {config.lights}")
-    return config
 
 
 def render(
