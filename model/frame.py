@@ -189,8 +189,9 @@ def with_reflectance(config: Config, frame: Frame) -> Config:
     table = frame.materials
     if config.technique != "phong" or not config.specular:
         return config
+    used = np.unique(frame.spans["material"]) if len(frame.spans) else np.arange(config.materials)
     changes: dict[str, Any] = {}
-    steps = jump_count(table.weight_jumps)
+    steps = jump_count(None if table.weight_jumps is None else table.weight_jumps[used])
     if steps > config.weight_jumps:
         if not config.weight_function:
             raise InputError("W has jumps, but the pipeline is built without a table of W(i)")
@@ -198,7 +199,10 @@ def with_reflectance(config: Config, frame: Frame) -> Config:
     if table.curve is not None:
         if config.power_method != "curve" or not config.power_function:
             changes |= {"power_method": "curve", "power_function": True, "constant_exponent": ()}
-        changes["curve_jumps"] = max(config.curve_jumps, jump_count(table.curve_jumps))
+        changes["curve_jumps"] = max(
+            config.curve_jumps,
+            jump_count(None if table.curve_jumps is None else table.curve_jumps[used]),
+        )
     changes = {name: value for name, value in changes.items() if getattr(config, name) != value}
     if not changes:
         return config

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from phong75.model.config import Config
 from phong75.model.registers import FIELDS
+from phong75.model.twin.reflectance.reflectance_map import reflectance_map
 
 
 class Destination(NamedTuple):
@@ -44,7 +45,7 @@ def unsupported_write(address: int, word: int, built: Config) -> bool:
     Flagged is a word that asks for what `built` leaves out, or that differs from a constant of
     `built`. The techniques without registers are not covered.
     """
-    if built.technique != "phong":
+    if built.technique != "phong" or not reflectance_map(address, built).plain:
         return False
     to = register_map(address, built)
     if to.name == "weight":
