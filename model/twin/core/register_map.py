@@ -30,7 +30,7 @@ def register_map(address: int, config: Config) -> Destination:
     """Decode `address` of the write port."""
     index = address & ((1 << config.weight_index_bits) - 1)
     material = address >> config.weight_index_bits & (config.materials - 1)
-    if address >> (config.material_bits + config.weight_index_bits) == 0:
+    if address >> (config.material_bits + config.weight_index_bits) & 1 == 0:
         return Destination("weight", material, index)
     for name, first in FIELDS.items():
         colours = 3 if name in ("ambient", "diffuse", "highlight") else 1
