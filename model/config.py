@@ -362,3 +362,19 @@ TECHNIQUES = {
     "gouraud": Config(name="gouraud", technique="gouraud"),
     "flat": Config(name="flat", technique="flat"),
 }
+
+#: Builds for eight lights of all colours: in turns, side by side, and mixes of both.
+LIGHT_BUILDS = {
+    name: Config(name=name, lights=MAX_LIGHTS, units=units, highlight_colour=True)
+    for units in UNITS
+    for name in [f"lights_{MAX_LIGHTS}" + (f"_units_{units}" if units > 1 else "")]
+}
+
+#: Builds with curves of cos(s) by table, and with jumps, by name.
+CURVE_BUILDS = {
+    "weight_jump": Config(name="weight_jump", weight_jumps=1),
+    "curve": Config(name="curve", power_method="curve"),
+    "curve_jumps": Config(
+        name="curve_jumps", power_method="curve", curve_jumps=MAX_JUMPS, weight_jumps=MAX_JUMPS
+    ),
+}

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable
 
 from phong75.model.analysis.pruning import BY_HAND
-from phong75.model.config import DEFAULT, MAX_JUMPS, TECHNIQUES, Config
+from phong75.model.config import CURVE_BUILDS, DEFAULT, LIGHT_BUILDS, TECHNIQUES, Config
 from phong75.model.frame import InputError
 from phong75.model.studies import methods
 
@@ -28,16 +28,10 @@ def _groups() -> dict[str, dict[str, Config]]:
         "older techniques": older,
         "with less built in": {n: c for n, c in by_hand.items() if n not in older},
         "with more built in": {
-            "hold_unlit": dataclasses.replace(DEFAULT, name="hold_unlit", hold_unlit=True),
-            "curve": dataclasses.replace(DEFAULT, name="curve", power_method="curve"),
-            "curve_jumps": dataclasses.replace(
-                DEFAULT,
-                name="curve_jumps",
-                power_method="curve",
-                curve_jumps=MAX_JUMPS,
-                weight_jumps=MAX_JUMPS,
-            ),
+            "hold_unlit": dataclasses.replace(DEFAULT, name="hold_unlit", hold_unlit=True)
         },
+        "with curves by table, or jumps": CURVE_BUILDS,
+        "with several lights": LIGHT_BUILDS,
         "points of `phong75 sweep`": {n: c for n, c in sweep.items() if n != DEFAULT.name},
     }
 
