@@ -24,6 +24,9 @@ from phong75.model.arrays import ArrayLike, Flags, Ints, Reals
 #: The largest number of lights of a build.
 MAX_LIGHTS = 8
 
+#: The largest number of jumps of W(i), and of a curve of cos(s), of one material.
+MAX_JUMPS = 4
+
 #: Possible numbers of shading units side by side.
 UNITS = (1, 2, 4, 8)
 
@@ -127,8 +130,8 @@ class Config:
     """Formats, table sizes and features of one pipeline, in the order of the data.
 
     Raises ValueError if a choice is not one of its names, `channels` is neither 1 nor 3,
-    `normal_order` is neither 1 nor 2, or 2 where no normal is interpolated, or the lights do not
-    fit their units or the features (see `_check_lights`).
+    `normal_order` is neither 1 nor 2, or 2 where no normal is interpolated, there are too many
+    jumps, or the lights do not fit their units or the features (see `_check_lights`).
     """
 
     name: str = "default"
@@ -144,7 +147,23 @@ class Config:
             raise ValueError(f"normal_order is {self.normal_order}, not 1 or 2")
         if self.normal_order == 2 and (self.technique != "phong" or self.spans_carry_squares):
             raise ValueError("normal_order is 2, but spans carry no normal")
+        self._check_reflectance()
         self._check_lights()
+
+    def _check_reflectance(self) -> None:
+        """Raise ValueError for curves or jumps that the build has no place for."""
+        for name in ("curve_jumps", "weight_jumps"):
+            if not 0 <= getattr(self, name) <= MAX_JUMPS:
+                raise ValueError(f"{name} is {getattr(self, name)}, not 0 to {MAX_JUMPS}")
+        if self.curve_jumps and self.power_method != "curve":
+            raise ValueError("curve_jumps are for power_method `curve`")
+        if self.weight_jumps and not self.weight_function:
+            raise ValueError("weight_jumps need weight_function")
+        if self.power_method == "curve" and self.constant_exponent:
+            raise ValueError("constant_exponent is for powers, not for power_method `curve`")
+        reflectance = self.power_method == "curve" or self.weight_jumps
+        if reflectance and self.normal_method == "quadratic_spans":
+            raise ValueError("normal_method `quadratic_spans` has neither curves nor jumps")
 
     def _check_lights(self) -> None:
         """Raise ValueError for lights or units out of range, and for a feature that rtl/lights does
@@ -253,10 +272,18 @@ class Config:
     quadratic_slope_bits: int = 18  # units of 2**-23 per segment
     quadratic_curve_bits: int = 14  # units of 2**-23 per segment squared
     start_index_bits: int = 6  # table: constants in each of [1, 2) and [2, 4), in `root`
-    power_method: str = choice("tables", "squaring", "schlick")  # of cos(s)**n
+    power_method: str = choice("tables", "squaring", "schlick", "curve")  # of cos(s)**n
     reciprocal_index_bits: int = 7  # schlick: lines of 1/m, 1 <= m < 2
     reciprocal_value_bits: int = 20  # table value: u0.20
     reciprocal_slope_bits: int = 14  # units of 2**-20 per segment
+
+    # -- reflectance by table ----------------------------------------------------------------------
+    # power_method "curve": any curve of cos(s) per material, in place of cos(s)**n; see
+    # model/reflectance.py.
+    curve_octave_bits: int = 3  # 8 octaves of 1 - cos(s) below 1/2, and 8 of cos(s) below 1/2
+    curve_index_bits: int = 4  # 16 lines an octave
+    curve_jumps: int = 0  # jumps of a curve beside those at the end of a line, up to 4
+    weight_jumps: int = 0  # jumps of W(i), up to 4
 
     # -- derived -----------------------------------------------------------------------------------
     @property
@@ -273,6 +300,16 @@ class Config:
     def weight_points(self) -> int:
         """Number of points of W(i), equally spaced over 0 <= Zn <= 1, both ends included."""
         return (1 << self.weight_index_bits) + 1
+
+    @property
+    def segment_bits(self) -> int:
+        """Width of the number of a line of a curve."""
+        return 1 + self.curve_octave_bits + self.curve_index_bits
+
+    @property
+    def has_curves(self) -> bool:
+        """Whether the highlight is a curve of a table (`power_method`)."""
+        return self.power_method == "curve" and self.specular and self.power_function
 
     @property
     def values(self) -> int:
@@ -356,4 +393,13 @@ LIGHT_BUILDS = {
     name: Config(name=name, lights=MAX_LIGHTS, units=units, highlight_colour=True)
     for units in UNITS
     for name in [f"lights_{MAX_LIGHTS}" + (f"_units_{units}" if units > 1 else "")]
+}
+
+#: Builds with curves of cos(s) by table, and with jumps, by name.
+CURVE_BUILDS = {
+    "weight_jump": Config(name="weight_jump", weight_jumps=1),
+    "curve": Config(name="curve", power_method="curve"),
+    "curve_jumps": Config(
+        name="curve_jumps", power_method="curve", curve_jumps=MAX_JUMPS, weight_jumps=MAX_JUMPS
+    ),
 }

@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
 from phong75.model.arrays import ArrayLike, Flags, Ints, Reals, Spans
 from phong75.model.config import Config
+from phong75.model.reflectance import Curve, jump_count
 
 #: One span: `length` pixels from (x, y) to the right.
 #:
@@ -49,6 +52,13 @@ class MaterialTable:
     ka La of every light; diffuse is kd Ld of the first light, and highlight: int64[M, 3] is ks Ls
     of the first light in `coefficient`. highlight is None where it is 1 everywhere and
     ambient + diffuse is at most 1: then one light needs no more than eq. (3).
+
+    Reflectance by table (see `phong75.model.reflectance`; None where no material has one):
+    curve: int64[M, S, 2], {left, step} of each line of the curve of cos(s), in `coefficient`; the
+    curve takes the place of n. curve_jumps, weight_jumps: int64[M, MAX_JUMPS, 3], the jumps of the
+    curve and of W: {above, threshold, amount}. The amount, in `coefficient`, is subtracted where
+    the operand is at or above the threshold (above = 1), or below (above = 0). The operand is
+    1 - cos(s) in `versine` for a curve and cos(i) in `cosine` for W.
     """
 
     ambient: Ints
@@ -56,6 +66,9 @@ class MaterialTable:
     weight: Ints
     exponent: Ints
     highlight: Ints | None = None
+    curve: Ints | None = None
+    curve_jumps: Ints | None = None
+    weight_jumps: Ints | None = None
 
     def __repr__(self) -> str:
         terms = np.concatenate([self.ambient, self.diffuse, self.weight], axis=1)
@@ -169,13 +182,49 @@ class Frame:
         return replace(self, spans=self.spans[rows], further=further)
 
 
+def with_reflectance(config: Config, frame: Frame) -> Config:
+    """`config` with the curves and the jumps that the materials of `frame` have; as it is where
+    they have none, or where `config` shades vertices.
+
+    Raises InputError if `config` leaves out the table of W(i), which a jump of W needs.
+    """
+    table = frame.materials
+    if config.technique != "phong" or not config.specular:
+        return config
+    used = np.unique(frame.spans["material"]) if len(frame.spans) else np.arange(config.materials)
+    changes: dict[str, Any] = {}
+    steps = jump_count(None if table.weight_jumps is None else table.weight_jumps[used])
+    if steps > config.weight_jumps:
+        if not config.weight_function:
+            raise InputError("W has jumps, but the pipeline is built without a table of W(i)")
+        changes["weight_jumps"] = steps
+    if table.curve is not None:
+        if config.power_method != "curve" or not config.power_function:
+            changes |= {"power_method": "curve", "power_function": True, "constant_exponent": ()}
+        changes["curve_jumps"] = max(
+            config.curve_jumps,
+            jump_count(None if table.curve_jumps is None else table.curve_jumps[used]),
+        )
+    changes = {name: value for name, value in changes.items() if getattr(config, name) != value}
+    if not changes:
+        return config
+    parts = {"power_method": "_curve", "curve_jumps": "_jumps", "weight_jumps": "_steps"}
+    name = config.name + "".join(part for field, part in parts.items() if field in changes)
+    try:
+        return replace(config, name=name, **changes)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+
+
 def fitted(config: Config, frame: Frame, units: int = 1) -> Config:
     """`config` with what `frame` needs beyond it: second differences where a span has a bend, and
-    the lights of `frame`. As it is for linear normals and one light with white highlights.
+    the lights, the curves and the jumps of `frame`. As it is for linear normals, one light with
+    white highlights and powers of cos(s).
 
     units: shading units side by side. Raises InputError if there are more units than lights, or if
-    `config` has a method or a feature that is for one light.
+    `config` has a method or a feature that is for one light, or see `with_reflectance`.
     """
+    config = with_reflectance(config, frame)
     if config.normal_order == 1 and frame.spans["bend"].any():
         config = replace(config, name=f"{config.name}_quadratic", normal_order=2)
     first = frame.materials.highlight
@@ -201,7 +250,8 @@ def fitted(config: Config, frame: Frame, units: int = 1) -> Config:
 
 
 def with_lights(config: Config, frame: Frame) -> Config:
-    """`config` if it sums lights, else with the lights of `frame` (see `fitted`).
+    """`config` with the curves and the jumps of `frame`; also with its lights (see `fitted`), if
+    `config` does not sum lights.
 
     Raises InputError if `frame` has more lights than `config`, or `config` cannot sum lights.
     """
@@ -209,7 +259,7 @@ def with_lights(config: Config, frame: Frame) -> Config:
         return fitted(config, frame)
     if frame.lights > config.lights:
         raise InputError(f"{frame.lights} lights in a build for {config.lights}")
-    return config
+    return with_reflectance(config, frame)
 
 
 @dataclass(repr=False)
@@ -232,8 +282,9 @@ class ExactFrame:
 
     start, step, bend: float64[n, 3], of the normal (unit at the vertices) or of the intensities S.
     eye: float64[3], the unit vector u to the eye in the light frame. ambient, diffuse, highlight:
-    float64[M, 3]; weight: float64[M, P]; exponent: float64[M]: of the materials, as in
-    `MaterialTable`. further: the lights beside the first.
+    float64[M, 3] of the materials, as in `MaterialTable`. weight, curve: of each of the M
+    materials, the scene's own W of cos(i), and the scene's own curve of cos(s) or cos(s)**n.
+    further: the lights beside the first.
     """
 
     start: Reals
@@ -243,8 +294,8 @@ class ExactFrame:
     ambient: Reals
     diffuse: Reals
     highlight: Reals
-    weight: Reals
-    exponent: Reals
+    weight: Sequence[Curve]
+    curve: Sequence[Curve]
     further: list[ExactLight] = field(default_factory=list)
 
     def __repr__(self) -> str:

@@ -12,6 +12,11 @@ An address is {kind, material, index}: 1 bit, `material_bits` and `weight_index_
 In a build for several lights the number of a light stands above: {light, kind, material, index}.
 The fields diffuse, highlight, half_x and half_z belong to a light; any light addresses the others.
 Bits 3 to 1 of control hold the number of the frame's lights minus 1.
+
+In a build with curves of cos(s) one more bit stands at the top. If it is 1, the address is
+{1, zeros, material, line}, the word {step, left} as for W(i). In a build with jumps the fields
+weight_jump and curve_jump hold two words a jump: {above, threshold}, then the amount in
+`coefficient` (u1.16).
 """
 
 from __future__ import annotations
@@ -20,18 +25,22 @@ import numpy as np
 
 from phong75.model.config import Config
 from phong75.model.frame import Frame
+from phong75.model.reflectance import power_words
 
 #: Index of each field at addresses of kind 1. Ambient, diffuse and highlight take three each: red,
-#: green, blue.
+#: green, blue. weight_jump and curve_jump take two for each of MAX_JUMPS jumps.
 FIELDS = {
     "ambient": 0, "diffuse": 3, "exponent": 6, "half_x": 8, "half_z": 9, "control": 10,
-    "highlight": 11,
+    "highlight": 11, "weight_jump": 16, "curve_jump": 24,
 }  # fmt: skip
 
 
 def address_bits(config: Config) -> int:
     """Width of the write port's address, in bits."""
-    return config.light_bits + 1 + config.material_bits + config.weight_index_bits
+    plain = config.light_bits + 1 + config.material_bits + config.weight_index_bits
+    if not config.has_curves:
+        return plain
+    return 1 + max(plain, config.material_bits + config.segment_bits)
 
 
 def word_bits(config: Config) -> int:
@@ -82,7 +91,8 @@ def writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
         known = config.constant_exponent or (
             () if config.power_function else (config.exponent.one,)
         )
-        write("exponent", n, config.specular and (n,) != tuple(known), base)
+        by_exponent = config.specular and not config.has_curves
+        write("exponent", n, by_exponent and (n,) != tuple(known), base)
         points = table.weight[material].tolist()
         known = config.constant_weight or (() if config.specular else (0,))
         for k in range(config.weight_points - 1):
@@ -90,7 +100,37 @@ def writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
             if config.weight_function or step or (k == 0 and (points[0],) != tuple(known)):
                 word = (step << config.coefficient.bits | points[k]) & word_mask
                 out.append((base | k, word))
+    if config.specular:
+        out += _reflectance_writes(frame, config)
     return out + (_light_writes(frame, config) if config.sums_lights else [])
+
+
+def _reflectance_writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
+    """The writes of the curves of cos(s), and of the jumps."""
+    out = []
+    table, top = frame.materials, 1 << (address_bits(config) - 1)
+    kind = 1 << (config.material_bits + config.weight_index_bits)
+    used = np.unique(frame.spans["material"])
+    if config.has_curves:
+        curves = table.curve[used] if table.curve is not None else power_words(
+            table.exponent[used], config
+        )  # fmt: skip
+        step_mask = (1 << (config.coefficient.bits + 1)) - 1
+        for material, lines in zip(used.tolist(), curves.tolist(), strict=True):
+            for k, (left, step) in enumerate(lines):
+                word = (step & step_mask) << config.coefficient.bits | left
+                out.append((top | material << config.segment_bits | k, word))
+    for name, jumps, count, operand in (
+        ("weight_jump", table.weight_jumps, config.weight_jumps, config.cosine),
+        ("curve_jump", table.curve_jumps, config.curve_jumps, config.versine),
+    ):
+        for material in used.tolist():
+            for k in range(count):
+                above, threshold, amount = (0, 0, 0) if jumps is None else jumps[material, k]
+                field = kind | material << config.weight_index_bits | FIELDS[name] + 2 * k
+                out.append((field, int(above) << operand.bits | int(threshold)))
+                out.append((field + 1, int(amount)))
+    return out
 
 
 def _light_writes(frame: Frame, config: Config) -> list[tuple[int, int]]:

@@ -11,7 +11,10 @@ The JSON object has exactly these keys:
     half_vector     [hx, hz], codes of the half vector between light and eye
     two_sided       whether |Zn| is shaded
     background      [red, green, blue], codes of the pixels that no span covers
-    materials       a list of {index, ambient[3], diffuse[3], weight[P], exponent}, all in codes
+    materials       a list of {index, ambient[3], diffuse[3], weight[P], exponent}, all in codes;
+                    with curves of cos(s) also curve: a list of [left, step] a line, and
+                    curve_jumps; with jumps of W also weight_jumps: lists of [above, threshold,
+                    amount] (see `MaterialTable`); each of the three is in all rows or in none
     spans           the number of records
     formats         the fields of `Config` that give these codes their meaning
     record          {bytes, fields}: the layout of a record; fields is {name: [lsb, bits]}
@@ -56,8 +59,9 @@ from numpy.typing import NDArray
 
 from phong75.model import quadratic_spans
 from phong75.model.arrays import Flags, Ints, Spans
-from phong75.model.config import Config
+from phong75.model.config import MAX_JUMPS, Config
 from phong75.model.frame import SPAN_DTYPE, Frame, FurtherLight, InputError, MaterialTable
+from phong75.model.reflectance import power_words
 
 MAGIC = "phong75-spans 1"
 
@@ -79,6 +83,9 @@ ORDER_2_FORMATS = ("normal_order", "bend_fraction_bits")
 
 #: The largest exponent n that the hardware is specified for.
 MAX_EXPONENT = 128
+
+#: The columns of `MaterialTable` that a frame without curves and jumps does not have.
+REFLECTANCE = ("curve", "curve_jumps", "weight_jumps")
 
 #: Records are packed and unpacked through words of this many bits.
 _WORD = 64
@@ -374,6 +381,7 @@ def _material_rows(frame: Frame, config: Config) -> list[dict[str, Any]]:
     for index in range(config.materials):
         row = {name: getattr(table, name)[index] for name in columns}
         if index in named or any((row[n] != getattr(empty, n)[index]).any() for n in columns):
+            row |= {n: c[index] for n in REFLECTANCE if (c := getattr(table, n)) is not None}
             rows.append({"index": index} | {name: code.tolist() for name, code in row.items()})
     return rows
 
@@ -578,8 +586,16 @@ def _materials(rows: Any, config: Config) -> tuple[MaterialTable, Flags]:
     table, given = MaterialTable.empty(config), np.zeros(config.materials, bool)
     one, n_one = config.coefficient.one, config.exponent.one
     most = config.coefficient.max if config.sums_lights else one
+    first = rows[0] if rows and isinstance(rows[0], dict) else {}
+    more = [name for name in REFLECTANCE if name in first]
+    if "curve" in more:
+        table.curve = power_words(table.exponent, config)
+    for name in more:
+        if name != "curve":
+            setattr(table, name, np.zeros((config.materials, MAX_JUMPS, 3), np.int64))
     for place, row in enumerate(rows):
-        _keys(f"materials[{place}]", row, ["index", "ambient", "diffuse", "weight", "exponent"])
+        keys = ["index", "ambient", "diffuse", "weight", "exponent", *more]
+        _keys(f"materials[{place}]", row, keys)
         index = _integer(f"materials[{place}].index", row["index"], 0, config.materials - 1)
         name = f"material {index}"
         if given[index]:
@@ -589,13 +605,43 @@ def _materials(rows: Any, config: Config) -> tuple[MaterialTable, Flags]:
         table.diffuse[index] = _integers(f"{name}: diffuse", row["diffuse"], 3, 0, most)
         if not config.sums_lights and (table.ambient[index] + table.diffuse[index] > one).any():
             raise InputError(f"{name}: ambient + diffuse, which is Cp, is above {one}")
+        top = config.coefficient.max if "weight_jumps" in more else one
         table.weight[index] = _integers(
-            f"{name}: weight", row["weight"], config.weight_points, 0, one
+            f"{name}: weight", row["weight"], config.weight_points, 0, top
         )
+        least = 0 if "curve" in more else n_one
         table.exponent[index] = _integer(
-            f"{name}: exponent", row["exponent"], n_one, MAX_EXPONENT * n_one
+            f"{name}: exponent", row["exponent"], least, MAX_EXPONENT * n_one
         )
+        _read_reflectance(table, index, row, more, config)
     return table, given
+
+
+def _read_reflectance(
+    table: MaterialTable, index: int, row: dict[str, Any], more: list[str], config: Config
+) -> None:
+    """The curve and the jumps of a row of line 2. more: those of REFLECTANCE that it has."""
+    name = f"material {index}"
+    if "curve" in more and table.curve is not None:
+        lines, most = row["curve"], config.coefficient.max
+        if not isinstance(lines, list) or len(lines) != table.curve.shape[1]:
+            raise InputError(f"{name}: curve is not a list of {table.curve.shape[1]} lines")
+        for k, line in enumerate(lines):
+            left, step = _integers(f"{name}: curve[{k}]", line, 2, -most, most)
+            if not (0 <= left and 0 <= left + step <= most):
+                raise InputError(f"{name}: curve[{k}] leaves the range from 0 to {most}")
+            table.curve[index, k] = left, step
+    for key, operand in (("curve_jumps", config.versine), ("weight_jumps", config.cosine)):
+        if key not in more:
+            continue
+        jumps = row[key]
+        if not isinstance(jumps, list) or len(jumps) != MAX_JUMPS:
+            raise InputError(f"{name}: {key} is not a list of {MAX_JUMPS} jumps")
+        for k, jump in enumerate(jumps):
+            above, threshold, amount = _integers(f"{name}: {key}[{k}]", jump, 3, 0, operand.max)
+            if above > 1 or amount > config.coefficient.max:
+                raise InputError(f"{name}: {key}[{k}] is not [0 or 1, threshold, amount]")
+            getattr(table, key)[index, k] = above, threshold, amount
 
 
 def _keys(name: str, value: Any, keys: list[str]) -> None:

@@ -172,21 +172,57 @@
   + 2                                /* quotient: shift twice */ \
   + `PHONG_ROUND_SATURATE_LATENCY )
 
+// Reflectance by table.
+`define PHONG_JUMPS_LATENCY \
+  ( `PHONG_SMALL_RAM_LATENCY \
+  + 1                                /* select */ \
+  + 2 )                              /* sum */
+
+// From a line to the amounts of its jumps.
+`define PHONG_STEPPED_LINE_FALL \
+  ( `PHONG_MULTIPLIER_LATENCY        /* line: step * offset */ \
+  + 1 )                              /* line: add */
+
+`define PHONG_STEPPED_LINE_LATENCY \
+  ( `PHONG_STEPPED_LINE_FALL \
+  + 1                                /* level: subtract */ \
+  + `PHONG_ROUND_SATURATE_LATENCY )  /* result */
+
+// From `versine` to its material.
+`define PHONG_CURVE_OCTAVE_LATENCY \
+  (`PHONG_LEADING_ZEROS_LATENCY + `PHONG_LEFT_SHIFTER_LATENCY)
+
+`define PHONG_REFLECTANCE_TABLE_LATENCY \
+  ( `PHONG_CURVE_OCTAVE_LATENCY \
+  + `PHONG_RAM_LATENCY               /* lookup */ \
+  + 1                                /* lookup: select the block */ \
+  + `PHONG_STEPPED_LINE_LATENCY )
+
+`define PHONG_STEPPED_WEIGHT_LATENCY \
+  (`PHONG_RAM_LATENCY + `PHONG_STEPPED_LINE_LATENCY)
+
 `define PHONG_SPECULAR_POWER_LATENCY \
   ( `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_TABLES ? `PHONG_SPECULAR_POWER_TABLES_LATENCY : \
     `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_SQUARING ? `PHONG_SPECULAR_POWER_SQUARING_LATENCY : \
+    `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_CURVE ? `PHONG_REFLECTANCE_TABLE_LATENCY : \
     `PHONG_SPECULAR_POWER_SCHLICK_LATENCY )
 
 // From `versine` to its `exponent`.
 `define PHONG_EXPONENT_LATENCY \
   ( `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_TABLES ? `PHONG_LOG_LATENCY : \
-    `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_SQUARING ? `PHONG_SPECULAR_COSINE_LATENCY - 1 : 0 )
+    `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_SQUARING ? `PHONG_SPECULAR_COSINE_LATENCY - 1 : \
+    `PHONG_POWER_METHOD == `PHONG_POWER_METHOD_CURVE ? \
+        `PHONG_CURVE_OCTAVE_LATENCY + `PHONG_SMALL_RAM_LATENCY : 0 )
 
 `define PHONG_SPECULAR_WEIGHT_LATENCY \
   ( `PHONG_RAM_LATENCY               /* lookup */ \
   + `PHONG_MULTIPLIER_LATENCY        /* interpolate: step * offset */ \
   + 1                                /* interpolate: add */ \
   + 1 )                              /* interpolate: round */
+
+// Of the table of W(i), with or without jumps.
+`define PHONG_WEIGHT_LATENCY \
+  (`PHONG_WEIGHT_JUMPS > 0 ? `PHONG_STEPPED_WEIGHT_LATENCY : `PHONG_SPECULAR_WEIGHT_LATENCY)
 
 `define PHONG_WEIGHT_PRODUCT_LATENCY \
   ( `PHONG_CONSTANT_WEIGHT ? `PHONG_CONSTANT_WEIGHT_LEVELS : `PHONG_MULTIPLIER_LATENCY )

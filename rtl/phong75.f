@@ -38,6 +38,13 @@ lights/light_highlight.v
 lights/light_terms.v
 lights/light_sum.v
 
+// curves of cos(s) by table, and jumps
+reflectance/reflectance_map.v
+reflectance/reflectance_table.v
+reflectance/stepped_weight.v
+reflectance/stepped_line.v
+reflectance/jumps.v
+
 // quadratic normals; and what Phong's paper compares with: Gouraud's and flat shading
 techniques/second_difference_interpolator.v
 techniques/gouraud_unit.v

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable
 
 from phong75.model.analysis.pruning import BY_HAND
-from phong75.model.config import DEFAULT, LIGHT_BUILDS, TECHNIQUES, Config
+from phong75.model.config import CURVE_BUILDS, DEFAULT, LIGHT_BUILDS, TECHNIQUES, Config
 from phong75.model.frame import InputError
 from phong75.model.studies import methods
 
@@ -41,6 +41,7 @@ def _groups() -> dict[str, dict[str, Config]]:
             "colour_10_wide": methods.of_width(20, "colour_10_wide", colour_bits=10),
             "colour_12": methods.of_width(22, "colour_12", colour_bits=12),
         },
+        "with curves by table, or jumps": CURVE_BUILDS,
         "with several lights": LIGHT_BUILDS,
         "points of `phong75 sweep`": {n: c for n, c in sweep.items() if n != DEFAULT.name},
     }

@@ -20,7 +20,15 @@ from pathlib import Path
 import numpy as np
 
 from phong75.model import spans, twin
-from phong75.model.analysis import error_budget, metrics, pictures, pruning, reference, run_report
+from phong75.model.analysis import (
+    error_budget,
+    metrics,
+    pictures,
+    pruning,
+    reference,
+    run_report,
+    undecided,
+)
 from phong75.model.config import DEFAULT, TECHNIQUES, Config
 from phong75.model.frame import ExactFrame, Frame, InputError, fitted
 from phong75.model.front.mesh_files.report import MeshReport
@@ -87,15 +95,16 @@ class Stimulus:
     """What the front end leaves: the frame, its file, the full configuration with the lights of the
     frame, and the configuration to build for it.
 
-    exact: the scene before any rounding; None where there is no scene behind the spans. full: the
-    configuration of the request, with what the frame needs beyond it; built: what is left of it
-    after pruning. meshes: what was decided about each object of the scene, by its name. front: what
-    the front end found besides; None where there is no scene.
+    exact: the scene before any rounding; None where there is no scene behind the spans. notes: as
+    of `FrontEnd`. full: the configuration of the request, with what the frame needs beyond it;
+    built: what is left of it after pruning. meshes: what was decided about each object of the
+    scene, by its name. front: what the front end found besides; None where there is no scene.
     """
 
     frame: Frame
     exact: ExactFrame | None
     degenerate_triangles: int
+    notes: list[str]
     full: Config
     built: Config
     path: Path
@@ -106,11 +115,15 @@ class Stimulus:
 @dataclass(frozen=True)
 class Ideal:
     """The reference: 255 S in float64, float64[n, 3], of the integers at the ports, and of the
-    scene before any rounding where there is one; and the bound of the error in LSB, or None."""
+    scene before any rounding where there is one; and the bound of the error in LSB, or None.
+
+    undecided: pixels at a jump, whose reference is the side that is nearer to the code (see
+    `model.analysis.undecided`)."""
 
     ports: np.ndarray
     scene: np.ndarray | None
     bound: float | None
+    undecided: int
 
 
 # -- the stages of a run ---------------------------------------------------------------------------
@@ -123,6 +136,7 @@ def _front_end(request: RunRequest, folder: Path, steps: Steps) -> Stimulus:
         if request.spans:
             written_for = spans.written_for(request.spans, config)
             frame, exact, degenerate = spans.read_spans(request.spans, written_for), None, 0
+            notes: list[str] = []
             meshes, front = [], None
         else:
             scene = load_scene(request.scene, request.size, config)
@@ -131,13 +145,14 @@ def _front_end(request: RunRequest, folder: Path, steps: Steps) -> Stimulus:
             front = front_end(scene, config, step.done)
             frame, exact, degenerate = front.frame, front.exact, front.degenerate_triangles
             meshes = [(item.name, item.report) for item in scene.objects if item.report]
+            notes = front.notes
         config = fitted(config, frame, request.units)
         built = _built(request, frame, config)
         if built.values != config.values and (reasons := pruning.missing(frame, built, config)):
             raise InputError(f"its spans have no place for this scene: {reasons[0]}")
         path = folder / "spans"
         spans.write_spans(path, frame, built)
-    return Stimulus(frame, exact, degenerate, config, built, path, meshes, front)
+    return Stimulus(frame, exact, degenerate, notes, config, built, path, meshes, front)
 
 
 def _built(request: RunRequest, frame: Frame, config: Config) -> Config:
@@ -174,15 +189,17 @@ def _simulation(stimulus: Stimulus, simulate: Simulate, steps: Steps) -> SimResu
     return result
 
 
-def _reference(stimulus: Stimulus, steps: Steps) -> Ideal:
+def _reference(stimulus: Stimulus, simulation: SimResult, steps: Steps) -> Ideal:
     """The frame in float64, and how far from it a code may be."""
     frame, exact, config = stimulus.frame, stimulus.exact, stimulus.full
+    codes = simulation.pixels.rgb
     with steps.step("reference"):
-        return Ideal(
-            reference.render(frame, config),
-            reference.render_exact(frame, exact, config) if exact else None,
-            error_budget.bound_lsb(frame, config),
-        )
+        ports = undecided.nearest(codes, reference.render(frame, config), frame, config)
+        scene = None
+        if exact:
+            scene = reference.render_exact(frame, exact, config)
+            scene = undecided.nearest(codes, scene, frame, config, exact).ideal
+        return Ideal(ports.ideal, scene, error_budget.bound_lsb(frame, config), ports.undecided)
 
 
 def _report(
@@ -204,6 +221,8 @@ def _report(
         comparison=comparison,
         zero_normals=twin.zero_normals(stimulus.frame, stimulus.full),
         error=metrics.error_metrics(codes, ports, request.config.white),
+        undecided=ideal.undecided,
+        notes=stimulus.notes,
         bound_lsb=None if ideal.bound is None else float(ideal.bound),
         pruned_differ=pruned_differ,
         input_error=scene_error,
@@ -263,7 +282,7 @@ def run(request: RunRequest, simulate: Simulate, steps: Steps) -> dict:
         stimulus = _front_end(request, folder, steps)
         expected, pruned_differ = _twin(stimulus, steps)
         simulation = _simulation(stimulus, simulate, steps)
-        ideal = _reference(stimulus, steps)
+        ideal = _reference(stimulus, simulation, steps)
         comparison = metrics.compare(expected, simulation.pixels)
         report = _report(request, stimulus, comparison, pruned_differ, simulation, ideal, steps)
         name = f"{report['scene']}, {report['technique']}"
@@ -376,6 +395,8 @@ def mesh_lines(report: dict) -> list[str]:
 def main(request: RunRequest) -> int:
     """Run `request`, print what came of it; returns the exit code. Raises as `run`."""
     report = run(request, run_frame.simulate, Steps())
+    for note in report["notes"]:
+        console.note(note)
     console.show(table(report))
     for line in mesh_lines(report):
         console.say(line)

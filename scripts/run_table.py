@@ -62,6 +62,10 @@ def table(report: dict) -> Table:
             + ("[yellow]the bound exceeds 1[/]" if wide else verdict(error["max_lsb"] <= bound)),
             f"derived bound {bound:.4f}; perfect: ½",
         )
+    if report["undecided"]:
+        rows.add_row(
+            "pixels at a jump", count(report["undecided"]), "the nearer side is the reference"
+        )
     rows.add_row("error, RMS", f"{error['rms_lsb']:.4f} LSB", f"99.9 %: {error['p999_lsb']:.4f}")
     rows.add_row(
         "correctly rounded",

@@ -13,7 +13,7 @@ from pathlib import Path
 from rich.table import Table
 
 from phong75.model.analysis.pruning import prune
-from phong75.model.config import DEFAULT, LIGHT_BUILDS, Config
+from phong75.model.config import CURVE_BUILDS, DEFAULT, LIGHT_BUILDS, Config
 from phong75.model.frame import InputError, fitted
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
@@ -77,18 +77,22 @@ def figures(report: dict) -> dict:
     return found
 
 
-def record_lights(report: dict) -> None:
-    """Record what `report` found of a build for several lights, beside the other ones."""
-    rows = recorded.figures("lights")
+#: {record: the builds that it has a row for}.
+BUILDS = {"lights": LIGHT_BUILDS, "reflectance": CURVE_BUILDS}
+
+
+def record_build(report: dict, name: str) -> None:
+    """Record what `report` found of a build, beside the other ones of the record `name`."""
+    rows = recorded.figures(name)
     rows[report["config"]] = {
         "clock_mhz": report["fmax_mhz"]["median"], "resources": report["resources"],
         "seeds": len(report["seeds"]), "date": datetime.date.today().isoformat(),
         "commit": recorded.commit(),
     }  # fmt: skip
-    builds = {name: rows[name] for name in LIGHT_BUILDS if name in rows}
-    command = "make synth CONFIG=lights_8, lights_8_units_2 …"
-    recorded.save("lights", command, tuple(report["tools"]), builds)
-    console.note("recorded in results/lights.json")
+    builds = {build: rows[build] for build in BUILDS[name] if build in rows}
+    command = f"make synth CONFIG={', '.join(list(BUILDS[name])[:2])} …"
+    recorded.save(name, command, tuple(report["tools"]), builds)
+    console.note(f"recorded in results/{name}.json")
 
 
 def effort(report: dict) -> dict[str, int]:
@@ -118,8 +122,9 @@ def main(config: Config, grade: int, seeds: int, count_gates: bool, record: bool
         raise InputError("--gates needs a library of cells: apt-get install qflow-tech-osu018")
     report = ecp5.run(config, grade, tuple(range(1, seeds + 1)), count_gates, Steps().step)
     console.show(table(report))
-    if record and config.name in LIGHT_BUILDS:
-        record_lights(report)
+    of = [name for name, builds in BUILDS.items() if config.name in builds]
+    if record and of:
+        record_build(report, of[0])
     elif record and more:
         _record_more(report)
     elif record:

@@ -21,9 +21,10 @@ import numpy as np
 from phong75.model import twin
 from phong75.model.analysis import metrics, pruning
 from phong75.model.config import DEFAULT as C
-from phong75.model.config import TECHNIQUES, Config
-from phong75.model.frame import Frame
+from phong75.model.config import MAX_JUMPS, TECHNIQUES, Config
+from phong75.model.frame import Frame, fitted
 from phong75.model.front.scene import load_scene
+from phong75.model.reflectance import segments
 from phong75.model.registers import address_bits, writes
 from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import bent_beyond, illegal_spans, turns
@@ -607,6 +608,67 @@ LIGHTS = {
 }  # fmt: skip
 
 
+# -- reflectance by table --------------------------------------------------------------------------
+
+
+def reflectant(frame: Frame, seed: int, curves: int = MAX_JUMPS, steps: int = MAX_JUMPS) -> Frame:
+    """`frame` with random curves and jumps, half of the lines flat, some of extreme codes.
+
+    curves, steps: jumps of each curve and of each W.
+    """
+    rng, one = np.random.default_rng(seed), C.coefficient.one
+    table = dataclasses.replace(frame.materials)
+    shape = (C.materials, len(segments(C).first))
+    left, right = rng.integers(0, one + 1, (2, *shape))
+    step = np.where(rng.random(shape) < 0.5, 0, right - left)
+    table.curve = np.stack([left, step], axis=-1)
+    table.curve[:, ::17] = (C.coefficient.max, -C.coefficient.max)
+
+    def jumps(fmt, count):
+        of = np.zeros((C.materials, MAX_JUMPS, 3), np.int64)
+        of[:, :count, 0] = rng.integers(0, 2, (C.materials, count))
+        of[:, :count, 1] = rng.integers(0, fmt.max + 1, (C.materials, count))
+        of[:, :count, 2] = rng.integers(1, one // 3, (C.materials, count))
+        return of
+
+    table.curve_jumps = jumps(C.versine, curves)
+    table.weight_jumps = jumps(C.cosine, steps) if steps else None
+    return dataclasses.replace(frame, materials=table)
+
+
+def _curves(name: str, frame: Frame, **changes) -> ConfigurationTest:
+    """`frame` on a build with `changes`, with and without stalls, and after other writes."""
+    config = dataclasses.replace(C, name=name, **changes)
+    rng = np.random.default_rng(SEED)
+    bits, most = address_bits(config), 2 << 2 * C.coefficient.bits
+    odd = [(int(a), int(rng.integers(most))) for a in rng.permutation(1 << bits)[:3000]]
+    return ConfigurationTest(
+        config, SimJob(frame), SimJob(frame, idle=100, stall=64, seed=SEED),
+        SimJob(frame, writes=odd + writes(frame, config)),
+    )  # fmt: skip
+
+
+def _pruned_curves() -> ConfigurationTest:
+    """Two materials of one block RAM, on the build that is pruned to them."""
+    frame = reflectant(plain(), SEED, 2, 1)
+    frame.spans["material"] &= 1
+    config = pruning.prune(frame)[0]
+    assert config.has_curves and config.idle_material_bits == C.material_bits - 1
+    return ConfigurationTest(
+        config, SimJob(frame), SimJob(frame, idle=100, stall=64, seed=SEED),
+        full=fitted(C, frame),
+    )  # fmt: skip
+
+
+def _lights_curves() -> ConfigurationTest:
+    """Three lights on two units, with curves and jumps."""
+    frame = reflectant(random_lights(SEED, 200, 7, 3, True), SEED)
+    config = fitted(C, frame, 2)
+    return ConfigurationTest(
+        config, SimJob(frame), SimJob(frame, idle=100, stall=64, seed=SEED)
+    )  # fmt: skip
+
+
 def in_words_of(config: Config, frame: Frame) -> Frame:
     """`frame`, whose codes are in the default formats, in the narrower formats of `config`."""
     drop = C.normal.fraction - config.normal.fraction
@@ -660,6 +722,21 @@ CONFIGURATION_TESTS: dict[str, Callable[[], ConfigurationTest]] = {
     "lights glow": lambda: _lights_without(diffuse=False, weight_function=False, coloured=False),
     "lights grey": lambda: _lights_without(
         channels=1, idle_x_bits=4, idle_y_bits=3, idle_material_bits=1
+    ),
+    "curve": lambda: _curves("curve", plain(), power_method="curve"),
+    "curve jumps": lambda: _curves(
+        "curve_jumps", reflectant(plain(), SEED), power_method="curve",
+        curve_jumps=MAX_JUMPS, weight_jumps=MAX_JUMPS,
+    ),
+    "curve pruned": _pruned_curves,
+    "curve lights": _lights_curves,
+    "weight jump": lambda: _curves(
+        "weight_jump",
+        dataclasses.replace(
+            stepped := reflectant(plain(), SEED, 0, 1),
+            materials=dataclasses.replace(stepped.materials, curve=None, curve_jumps=None),
+        ),
+        weight_jumps=1,
     ),
     "single": lambda: _single(),
     "single grey": lambda: _single(grey),

@@ -40,7 +40,17 @@ def on_screen(scene):
 
 
 def test_bundled_scenes():
-    assert set(bundled_scenes()) == {"cone", "pyramid", "sphere", "still_life", "teapot", "torus"}
+    assert set(bundled_scenes()) == {
+        "coloured_lights",
+        "cone",
+        "lamps",
+        "pyramid",
+        "sphere",
+        "still_life",
+        "teapot",
+        "toon",
+        "torus",
+    }
     for name in bundled_scenes():
         scene = load_scene(name)
         assert (scene.name, scene.width, scene.height) == (name, 640, 480)
@@ -102,7 +112,7 @@ def with_material(text):
 def test_weights_become_points_equally_spaced_in_zn(scene, text, expected):
     made = front_end(scene(with_material(text), size=(8, 6)))
     zn = np.linspace(0, 1, DEFAULT.weight_points)
-    assert made.exact.weight[0] == pytest.approx(expected(zn))
+    assert made.exact.weight[0].at(zn) == pytest.approx(expected(zn))
     codes = DEFAULT.coefficient.real(made.frame.materials.weight[0])
     assert codes == pytest.approx(expected(zn), abs=DEFAULT.coefficient.lsb)
 
@@ -110,7 +120,9 @@ def test_weights_become_points_equally_spaced_in_zn(scene, text, expected):
 def test_a_list_of_the_tables_own_length_is_taken_as_it_is(scene):
     values = np.linspace(0.1, 0.8, DEFAULT.weight_points) ** 2
     made = front_end(scene(with_material(f"W = {values.tolist()}"), size=(8, 6)))
-    assert made.exact.weight[0] == pytest.approx(values, abs=1e-15)
+    assert made.exact.weight[0].at(np.linspace(0, 1, len(values))) == pytest.approx(
+        values, abs=1e-15
+    )
 
 
 def test_materials_by_name_inline_and_by_default(scene):
@@ -252,8 +264,24 @@ MISTAKES = {
     'interpolation = "cubic"\n'
     + MINIMAL: "interpolation = 'cubic' is not one of linear, normalized_edges",
     # materials
-    with_material("n = 0.5"): r"materials.m.n = 0.5 is outside \[1, 128\]",
-    with_material("n = 129"): r"materials.m.n = 129 is outside \[1, 128\]",
+    with_material("n = -0.5"): r"materials.m.n = -0.5 is outside \[0, 128\]",
+    with_material("n = 129"): r"materials.m.n = 129 is outside \[0, 128\]",
+    with_material(
+        "n = 5\ncurve = {cos = [0], values = [1]}"
+    ): "materials.m.n has no effect beside curve",
+    with_material("curve = 1"): "materials.m.curve = 1 is not a table",
+    with_material(
+        "curve = {cos = [0, 1], values = [1]}"
+    ): "materials.m.curve 2 cosines, but 1 values",
+    with_material(
+        "curve = {cos = [0.5, 0.4], values = [0, 1]}"
+    ): r"materials.m.curve.cos = \[0.5, 0.4\] do not increase",
+    with_material(
+        "curve = {cos = [0.5, 0.5, 0.5], values = [0, 1, 0]}"
+    ): "has three equal ones in a row; a jump has two",
+    with_material(
+        "curve = {cos = [0, 1], values = [0, 1.5]}"
+    ): r"materials.m.curve.values\[1\] = 1.5 is outside \[0, 1\]",
     with_material("n = nan"): "materials.m.n = nan is not finite",
     with_material("n = true"): "materials.m.n = True is not a number",
     with_material('n = "10"'): "materials.m.n = '10' is not a number",

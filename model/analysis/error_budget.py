@@ -22,6 +22,7 @@ from phong75.model.arrays import ArrayLike, Ints, Reals
 from phong75.model.config import DEFAULT, Config, Format
 from phong75.model.frame import Frame, with_lights
 from phong75.model.quadratic_spans import MARGIN_BITS
+from phong75.model.reflectance import power_words, segments, weight_value
 from phong75.model.twin.core.span_walker import walk
 from phong75.model.twin.techniques.second_difference_interpolator import parabola
 
@@ -392,6 +393,60 @@ def power(
     return float(np.max(n * c ** (n - 1) * dv)) + specular_power(n, config)
 
 
+def curve(
+    words: Ints, half_vector: ArrayLike, config: Config, square: float = 0.0, tilt: float = 0.0,
+    reach: float | None = None,
+) -> float:  # fmt: skip
+    """Error of a curve by table against its lines at the exact 1 - cos(s).
+
+    words: int[S, 2], {left, step} of each line. The line is exact; its slope carries the largest
+    error of v in its segment. Then the saturation of v below 1, the rounding, and the clamp at 1.
+    It holds for the side of each jump and for the line that the hardware chooses; within the error
+    of v of the end of a line that can be another one than for the exact operands (see `undecided`).
+    half_vector, square, tilt, reach: see `versine`.
+    """
+    cut = segments(config)
+    last = cut.versine([0.0, 1.0], config).max(axis=0)
+    beyond = float(versine(1.0, half_vector, config, square, tilt, reach))
+    dv = versine(np.minimum(last + beyond, 1), half_vector, config, square, tilt, reach)
+    slope = np.abs(config.coefficient.real(words[:, 1])) / (cut.length * config.versine.lsb)
+    return float(np.max(slope * (dv + _round(config.versine)))) + config.power.lsb
+
+
+def highlight(
+    material: int, half_vector: ArrayLike, frame: Frame, config: Config, square: float = 0.0,
+    tilt: float = 0.0, reach: float | None = None,
+) -> float:  # fmt: skip
+    """Error of cos(s)**n or of the curve of one `material`. The other arguments: see `versine`."""
+    table = frame.materials
+    if config.has_curves:
+        words = table.curve[material] if table.curve is not None else power_words(
+            table.exponent[material : material + 1], config
+        )[0]  # fmt: skip
+        return curve(words, half_vector, config, square, tilt, reach)
+    n = float(config.exponent.real(table.exponent[material]))
+    return power(n, half_vector, config, square, tilt, reach)
+
+
+def largest_weight(material: int, frame: Frame, config: Config) -> float:
+    """The largest W(i) of one `material`."""
+    table = frame.materials
+    points = table.weight[material]
+    if table.weight_jumps is None:
+        return float(config.coefficient.real(points).max())
+    jumps = table.weight_jumps[material]
+    places = config.cosine.real(np.concatenate([jumps[:, 1], jumps[:, 1] - 1]))
+    zn = np.clip(np.concatenate([np.linspace(0, 1, len(points)), places]), 0, 1)
+    return float(
+        weight_value(
+            np.broadcast_to(points, (len(zn), len(points))),
+            np.broadcast_to(jumps, (len(zn), *jumps.shape)), zn, config,
+        ).max()
+    ) + float(np.abs(np.diff(config.coefficient.real(points))).max()) * config.cosine.lsb * (
+        len(points) - 1
+    )  # fmt: skip
+
+
 def weight(
     points: Ints, config: Config, square: float = 0.0, tilt: float = 0.0,
     reach: float | None = None,
@@ -432,7 +487,7 @@ def rows(
     table = frame.materials
     n = float(config.exponent.real(table.exponent[material]))
     diffuse = float(config.coefficient.real(table.diffuse[material]).max())
-    w = float(config.coefficient.real(table.weight[material]).max())
+    w = largest_weight(material, frame, config)
     square = 0.0
     if config.normal_method == "quadratic_spans":
         bound = squares(frame, config)
@@ -466,14 +521,16 @@ def rows(
         ]
     method = {"tables": "log and exp tables", "squaring": "repeated squaring"}
     parts.append(
-        BudgetRow(
+        BudgetRow("specular power", config.power.lsb, "rounding of the curve; its lines are exact")
+        if config.has_curves
+        else BudgetRow(
             "specular power",
             specular_power(n, config),
             f"{method.get(config.power_method, config.power_method)}, n = {n:g}",
         )
     )
     if w > 0:
-        specular = w * power(n, frame.half_vector, config, square, tilt)
+        specular = w * highlight(material, frame.half_vector, frame, config, square, tilt)
         weight_error = weight(table.weight[material], config, square, tilt)
     else:
         specular = weight_error = 0.0
@@ -499,13 +556,13 @@ def light_rows(material: int, frame: Frame, config: Config, reach: list[float]) 
     table, real = frame.materials, config.coefficient.real
     n = float(config.exponent.real(table.exponent[material]))
     points = table.weight[material]
-    w = float(real(points).max())
+    w = largest_weight(material, frame, config)
     diffuse, specular = np.zeros(3), np.zeros(3)
     for number, its_reach in enumerate([None, *reach]):
         light = frame.light(number, config)
         diffuse += real(light.diffuse[material]) * cosine(config, reach=its_reach)
         if w > 0:
-            error = w * power(n, light.half_vector, config, reach=its_reach)
+            error = w * highlight(material, light.half_vector, frame, config, reach=its_reach)
             error += weight(points, config, reach=its_reach)
             if config.highlight_colour:
                 error += _round(config.highlight)
@@ -524,7 +581,9 @@ def light_rows(material: int, frame: Frame, config: Config, reach: list[float]) 
         BudgetRow("direction", direction(config), "mantissas of a normal, radians"),
         BudgetRow("length, first light", length(config), "1/sqrt and its operand, relative"),
         BudgetRow("length, other lights", held_length(config), "and the first light's mantissas"),
-        BudgetRow("specular power", specular_power(n, config), f"tables, n = {n:g}"),
+        BudgetRow("specular power", config.power.lsb, "rounding of the curve; its lines are exact")
+        if config.has_curves
+        else BudgetRow("specular power", specular_power(n, config), f"tables, n = {n:g}"),
         *terms,
         BudgetRow("code", total, f"LSB: {white} times the terms, and the final rounding"),
     ]
@@ -532,7 +591,7 @@ def light_rows(material: int, frame: Frame, config: Config, reach: list[float]) 
 
 def derived(config: Config, n: float) -> bool:
     """Whether a bound is derived for the methods of `config` and the exponent `n`."""
-    power_method = config.power_method == "tables" or (
+    power_method = config.power_method in ("tables", "curve") or (
         config.power_method == "squaring" and n == int(n)
     )
     return config.normal_method in ("normalize", "dot_first", "quadratic_spans") and power_method

@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 
 from phong75.model.arrays import Flags, Ints, Spans
-from phong75.model.config import DEFAULT, TECHNIQUES, UNITS, Config
+from phong75.model.config import DEFAULT, MAX_JUMPS, TECHNIQUES, UNITS, Config
 from phong75.model.frame import Frame, with_lights
+from phong75.model.reflectance import jump_count
 from phong75.model.twin.core.normalizer import leading_zeros
 from phong75.model.twin.core.phong_unit import interpolate
 from phong75.model.twin.core.register_map import vanishing_exponent
@@ -40,10 +41,10 @@ class Facts:
     """The facts of a frame that the features depend on.
 
     materials: int64[m], the rows of the material table that spans name; of those rows: ambient,
-    diffuse: int64[m, 3]; weight: int64[m, P]; exponent: int64[m]. two_sided: of the frame. shifts:
-    the different shifts of the block normalization, int64, sorted. steps, bends: int64[n, 3], of
-    the spans of more than one pixel. further_diffuse: int64[m, 3] of each further light;
-    highlights: int64[m, 3] of each light.
+    diffuse: int64[m, 3]; weight: int64[m, P]; exponent: int64[m]; curve_jumps, weight_jumps:
+    int64[m, J, 3]. two_sided: of the frame. shifts: the different shifts of the block
+    normalization, int64, sorted. steps, bends: int64[n, 3], of the spans of more than one pixel.
+    further_diffuse: int64[m, 3] of each further light; highlights: int64[m, 3] of each light.
     """
 
     materials: Ints
@@ -51,6 +52,8 @@ class Facts:
     diffuse: Ints
     weight: Ints
     exponent: Ints
+    curve_jumps: Ints
+    weight_jumps: Ints
     two_sided: bool
     shifts: Ints
     steps: Ints
@@ -71,11 +74,17 @@ def facts(frame: Frame, config: Config) -> Facts:
     table, longer = frame.materials, spans["length"] > 1
     return Facts(
         used, table.ambient[used], table.diffuse[used], table.weight[used], table.exponent[used],
+        _jumps(table.curve_jumps, used), _jumps(table.weight_jumps, used),
         bool(frame.two_sided), _shifts(spans, config), spans["step"][longer],
         spans["bend"][longer],
         [light.diffuse[used] for light in frame.further],
         [frame.light(number, config).highlight[used] for number in range(frame.lights)],
     )  # fmt: skip
+
+
+def _jumps(jumps: Ints | None, used: Ints) -> Ints:
+    """Rows `used` of `jumps` (int64[M, J, 3]), zeros for None."""
+    return np.zeros((len(used), MAX_JUMPS, 3), np.int64) if jumps is None else jumps[used]
 
 
 def _shifts(spans: Spans, config: Config) -> Ints:
@@ -140,6 +149,7 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[FeatureR
         return config, [FeatureRow(feature, True, why, "") for feature in FEATURES]
     pruner = _Pruner(frame, config)
     pruner.terms()
+    pruner.jumps()
     if config.sums_lights:
         pruner.lights()
     else:
@@ -167,6 +177,9 @@ class _Pruner:
         self.specular = bool(shiny.any())
         self.power = bool((n != one).any()) or (self.specular and config.power_method == "schlick")
         self.weight_varies = (self.facts.weight != self.facts.weight[:, :1]).any(axis=1)
+        self.weight_varies |= self.facts.weight_jumps[..., 2].any(axis=1)
+        if config.power_method == "curve":
+            self.power = self.specular
 
     def decide(
         self, feature: str, needed: object, why: str, saves: str, without: object = False
@@ -238,6 +251,20 @@ class _Pruner:
         sides = "two" if f.two_sided else "one"
         self.decide("two_sided", f.two_sided, f"the frame is {sides}-sided", "turning of Zn")
 
+    def jumps(self) -> None:
+        """How many jumps W and the curves of cos(s) have."""
+        f = self.facts
+        for name, jumps, built in (
+            ("curve_jumps", f.curve_jumps, self.config.curve_jumps),
+            ("weight_jumps", f.weight_jumps, self.config.weight_jumps),
+        ):
+            least = jump_count(jumps) if self.specular else 0
+            if built:
+                self.decide(
+                    name, least == built, f"{least} jumps in a material", "comparators, amounts",
+                    without=least,
+                )  # fmt: skip
+
     def lights(self) -> None:
         """How many lights, and whether their highlights have colours."""
         config, count = self.config, self.frame.lights
@@ -265,8 +292,10 @@ class _Pruner:
             "no highlight",
         )  # fmt: skip
         values = np.unique(self.exponents)
+        curves = self.config.power_method == "curve"
         self.fold(
-            "constant_exponent", self.power, values, _many(len(values), "exponent n"),
+            "constant_exponent", self.power, values[:0] if curves else values,
+            "a curve has no n" if curves else _many(len(values), "exponent n"),
             f"table of n; {sums}", "no power",
         )  # fmt: skip
         varies = self.weight_varies.any()

@@ -8,19 +8,44 @@ cos(s) in the form of the paper. With several lights it sums OpenGL's model over
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
 from phong75.model.arrays import ArrayLike, Ints, Reals, Spans
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import ExactFrame, Frame
+from phong75.model.reflectance import Curve, curve_value, power_words, weight_value
+
+#: W of cos(i), or what stands in place of cos(s)**n as a function of cos(s), at pixels: float64[n]
+#: to float64[n].
+Function = Callable[[Reals], Reals]
+
+
+def _weight(weight: Reals | Function, cos_i: Reals) -> Reals:
+    """W at `cos_i` (float64[n]) of a function or of points float64[n, P], equally spaced."""
+    if callable(weight):
+        return weight(cos_i)
+    points = weight.shape[1]
+    position = np.clip(cos_i, 0, 1) * (points - 1)
+    left = np.minimum(position.astype(np.int64), points - 2)
+    row = np.arange(len(cos_i))
+    return weight[row, left] + (weight[row, left + 1] - weight[row, left]) * (position - left)
+
+
+def _highlight(curve: Reals | Function, cos_s: Reals) -> Reals:
+    """The curve of cos(s), or its power for exponents float64[n], at max(`cos_s`, 0)."""
+    cos_s = np.maximum(cos_s, 0)
+    return curve(cos_s) if callable(curve) else cos_s**curve
 
 
 def shade(
     normal: Reals,
     cp_d: Reals,
     cp_rest: Reals,
-    weight: Reals,
-    exponent: Reals,
+    weight: Reals | Function,
+    exponent: Reals | Function,
     eye: Reals,
     two_sided: bool,
     white: int = DEFAULT.white,
@@ -29,8 +54,8 @@ def shade(
 
     normal: float64[n, 3], any length, light frame.
     cp_d, cp_rest: float64[n, 3], Cp d and Cp (1 - d), 0 to 1.
-    weight: float64[n, P], W at P equally spaced Zn from 0 to 1.
-    exponent: float64[n], n of eq. (3).
+    weight: float64[n, P], W at P equally spaced Zn from 0 to 1; or a function of cos(i).
+    exponent: float64[n], n of eq. (3); or a function of cos(s) in place of cos(s)**n.
     eye: float64[3] or [n, 3], unit vector u, light frame.
     two_sided: shade |Zn|. white: the code of S = 1.
 
@@ -42,14 +67,10 @@ def shade(
     length = np.sqrt((normal**2).sum(axis=1))
     n = normal / np.where(length > 0, length, 1)[:, None]
     cos_i = n[:, 2]
-    cos_s = np.maximum(2 * cos_i * (n * eye).sum(axis=1) - eye[..., 2], 0)
-    points = weight.shape[1]
-    position = np.clip(cos_i, 0, 1) * (points - 1)
-    left = np.minimum(position.astype(np.int64), points - 2)
-    row = np.arange(len(n))
-    w = weight[row, left] + (weight[row, left + 1] - weight[row, left]) * (position - left)
+    cos_s = 2 * cos_i * (n * eye).sum(axis=1) - eye[..., 2]
+    w = _weight(weight, cos_i)
     s = cp_d + np.where(lit, cos_i, 0)[:, None] * cp_rest
-    s = s + np.where(lit, w * cos_s**exponent, 0)[:, None]
+    s = s + np.where(lit, w * _highlight(exponent, cos_s), 0)[:, None]
     return white * np.clip(s, 0, 1)
 
 
@@ -59,8 +80,8 @@ def shade_lights(
     ambient: Reals,
     diffuse: Reals,
     highlight: Reals,
-    weight: Reals,
-    exponent: Reals,
+    weight: Reals | Function,
+    exponent: Reals | Function,
     eyes: Reals,
     two_sided: bool,
     white: int = DEFAULT.white,
@@ -72,24 +93,22 @@ def shade_lights(
     vectors: float64[L, n, 3], the normal in the frame of each of L lights, divided by the length of
     the first one: unit vectors, but for the rounding of the ports. Components beyond 1 count as 1.
     material: int64[n]. ambient: float64[M, 3], the part without a direction. diffuse, highlight:
-    float64[L, M, 3], kd Ld and ks Ls. weight: float64[M, P], exponent: float64[M], as in `shade`.
+    float64[L, M, 3], kd Ld and ks Ls. weight: float64[M, P], exponent: float64[M], as in `shade`;
+    or functions of the pixels.
     eyes: float64[L, 3]. two_sided: shade |N.L| of each light.
 
     R.V is 2 (N.L) (N.V) - L.V for a unit vector N. For another length it is continued as
     2 (N.L) (N.V) + 1 - (1 + L.V) |N|**2, which is 1 - 2 (x**2 + y**2) with x and y of N x H.
     """
-    total, weight, exponent = ambient[material], weight[material], exponent[material]
-    points = weight.shape[1]
-    row = np.arange(vectors.shape[1])
+    total = ambient[material]
+    weight = weight if callable(weight) else weight[material]
+    exponent = exponent if callable(exponent) else exponent[material]
     for n, kd, ks, eye in zip(np.clip(vectors, -1, 1), diffuse, highlight, eyes, strict=True):
         cos_i = np.abs(n[:, 2]) if two_sided else n[:, 2]
         lit = (cos_i > 0)[:, None]
         along = (n * eye).sum(axis=1)
         cos_s = 2 * n[:, 2] * along + 1 - (1 + eye[2]) * (n**2).sum(axis=1)
-        position = np.clip(cos_i, 0, 1) * (points - 1)
-        left = np.minimum(position.astype(np.int64), points - 2)
-        w = weight[row, left] + (weight[row, left + 1] - weight[row, left]) * (position - left)
-        specular = w * np.maximum(cos_s, 0) ** exponent
+        specular = _weight(weight, cos_i) * _highlight(exponent, cos_s)
         terms = kd[material] * cos_i[:, None] + ks[material] * specular[:, None]
         total = total + np.where(lit, terms, 0)
     return white * np.clip(total, 0, 1)
@@ -136,11 +155,45 @@ def zero_normals(frame: Frame, config: Config = DEFAULT) -> int:
     return int((normal == 0).all(axis=1).sum())
 
 
-def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:
+@dataclass(frozen=True)
+class Sides:
+    """Where jumps are looked for: `weight` is added to cos(i), and `versine` of 1 - cos(s) to that,
+    where the side of a jump is chosen."""
+
+    weight: float
+    versine: Function
+
+
+def _functions(
+    frame: Frame, material: Ints, config: Config, sides: Sides | None
+) -> tuple[Reals | Function, Reals | Function]:
+    """W and the highlight's curve of the tables of `frame`, as `shade` takes them."""
+    table = frame.materials
+    weight: Reals | Function = config.coefficient.real(table.weight)[material]
+    power: Reals | Function = config.exponent.real(table.exponent)[material]
+    if table.weight_jumps is not None:
+        jumps, points = table.weight_jumps[material], table.weight[material]
+        side = sides.weight if sides else 0.0
+        weight = lambda cos_i: weight_value(points, jumps, cos_i, config, side)  # noqa: E731
+    curve = table.curve
+    if curve is None and config.has_curves:
+        curve = power_words(table.exponent, config)
+    if curve is not None:
+        lines = curve[material]
+        steps = None if table.curve_jumps is None else table.curve_jumps[material]
+
+        def power(cos_s: Reals) -> Reals:
+            v = np.clip(1 - cos_s, 0, 1)
+            return curve_value(lines, steps, v, config, sides.versine(v) if sides else 0.0)
+
+    return weight, power
+
+
+def render(frame: Frame, config: Config = DEFAULT, sides: Sides | None = None) -> np.ndarray:
     """The code white clamp(S, 0, 1) of the integers at the ports and in the tables, float64[n, 3].
 
     Rows are in the order of the stream. The comparison with the pipeline's codes shows the error of
-    the pipeline alone.
+    the pipeline alone. sides: see `undecided`.
     """
     differences = _differences(frame.spans, config)
     if config.technique != "phong":
@@ -148,19 +201,20 @@ def render(frame: Frame, config: Config = DEFAULT) -> np.ndarray:
         return config.white * np.clip(intensity / config.normal.one, 0, 1)
     normal, material = _pixels(frame.spans, *differences)
     table, real = frame.materials, config.coefficient.real
+    weight, power = _functions(frame, material, config, sides)
     if config.sums_lights or frame.further or table.highlight is not None:
         lights = [frame.light(number, config) for number in range(frame.lights)]
         return shade_lights(
             shared_length(frame), material, real(table.ambient),
             np.stack([real(light.diffuse) for light in lights]),
             np.stack([real(light.highlight) for light in lights]),
-            real(table.weight), config.exponent.real(table.exponent),
+            weight if callable(weight) else real(table.weight),
+            power if callable(power) else config.exponent.real(table.exponent),
             np.stack([eye_of(light.half_vector) for light in lights]), frame.two_sided,
             config.white,
         )  # fmt: skip
     return shade(
-        normal, real(table.ambient)[material], real(table.diffuse)[material],
-        real(table.weight)[material], config.exponent.real(table.exponent)[material],
+        normal, real(table.ambient)[material], real(table.diffuse)[material], weight, power,
         eye_of(frame.half_vector), frame.two_sided, config.white,
     )  # fmt: skip
 
@@ -187,16 +241,36 @@ def shared_length(frame: Frame) -> Reals:
     return normals * scale[..., None]
 
 
-def render_exact(frame: Frame, exact: ExactFrame, config: Config = DEFAULT) -> np.ndarray:
+def render_exact(
+    frame: Frame, exact: ExactFrame, config: Config = DEFAULT, sides: Sides | None = None
+) -> np.ndarray:
     """The code white clamp(S, 0, 1) from the scene's values before any rounding, float64[n, 3].
 
     exact: the values that were rounded to `frame`. The comparison with the pipeline's codes also
-    shows the error of rounding the input.
+    shows the error of rounding the input, and of the tables of W and of the curves. sides: see
+    `undecided`.
     """
     normal, m = _pixels(frame.spans, exact.start, exact.step, exact.bend)
     if config.technique != "phong":
         return config.white * np.clip(normal, 0, 1)
-    return shade_exact(normal, m, exact, frame.two_sided, config.white)
+    return shade_exact(normal, m, exact, frame.two_sided, config.white, sides)
+
+
+def _by_material(curves: Sequence[Curve], material: Ints, side: Function) -> Function:
+    """The function of pixels of `material` (int64[n]) that looks up `curves`; side: what is added
+    where the side of a jump is chosen."""
+
+    def value(x: Reals) -> Reals:
+        out, chosen = np.empty_like(x), x + side(x)
+        for m in np.unique(material).tolist():
+            rows = material == m
+            out[rows] = curves[m].at(x[rows])
+            for place, height in curves[m].jumps:
+                change = (chosen[rows] >= place).astype(int) - (x[rows] >= place)
+                out[rows] += change * height
+        return out
+
+    return value
 
 
 def shade_exact(
@@ -205,23 +279,26 @@ def shade_exact(
     exact: ExactFrame,
     two_sided: bool,
     white: int = DEFAULT.white,
+    sides: Sides | None = None,
 ) -> Reals:
     """The code white clamp(S, 0, 1) of normals before any rounding, float64[n, 3].
 
-    normal: float64[n, 3], any length, in the first light's frame. material: int64[n].
+    normal: float64[n, 3], any length, in the first light's frame. material: int64[n]. sides: see
+    `undecided`.
     """
     m, further = material, exact.further
+    shift = sides or Sides(0.0, np.zeros_like)
+    weight = _by_material(exact.weight, m, lambda cos_i: np.full_like(cos_i, shift.weight))
+    power = _by_material(exact.curve, m, lambda cos_s: -shift.versine(np.clip(1 - cos_s, 0, 1)))
     if not further and (exact.highlight == 1).all():
         return shade(
-            normal, exact.ambient[m], exact.diffuse[m], exact.weight[m], exact.exponent[m],
-            exact.eye, two_sided, white,
-        )  # fmt: skip
+            normal, exact.ambient[m], exact.diffuse[m], weight, power, exact.eye, two_sided, white
+        )
     length = np.sqrt((normal**2).sum(axis=1))
     unit = normal / np.where(length > 0, length, 1)[:, None]
     return shade_lights(
         np.stack([unit, *(unit @ light.turn.T for light in further)]), m, exact.ambient,
         np.stack([exact.diffuse, *(light.diffuse for light in further)]),
-        np.stack([exact.highlight, *(light.highlight for light in further)]),
-        exact.weight, exact.exponent,
+        np.stack([exact.highlight, *(light.highlight for light in further)]), weight, power,
         np.stack([exact.eye, *(light.eye for light in further)]), two_sided, white,
     )  # fmt: skip

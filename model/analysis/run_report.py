@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import platform
+from collections.abc import Sequence
 from importlib.metadata import version
 from typing import Any, Protocol
 
@@ -50,17 +51,20 @@ def make_report(
     mesh: list[dict[str, Any]],
     lit_facing_away: int | None,
     empty: str | None,
+    undecided: int = 0,
+    notes: Sequence[str] = (),
     wall_s: dict[str, float],
 ) -> dict[str, Any]:
     """The contents of `report.json`, ready for JSON: None stands for what is not defined.
 
     error, input_error: from `metrics.error_metrics`; the second is None where there is no scene
     behind the spans. bound_lsb: None where no bound is derived for a method of `config`.
-    zero_normals: what the model counts. fps in frames and clock_hz in clocks a second; wall_s in
-    seconds. pruned_differ: pixels in which the model of what was built differs from that of the
-    full design. mesh: what was decided about each object of the scene. lit_facing_away: pixels that
-    interpolated normals light although their triangle turns away from the light. empty: why the
-    picture has no pixel, in words.
+    undecided: pixels at a jump (see `analysis.undecided`). notes: as of `FrontEnd`. zero_normals:
+    what the model counts. fps in frames and clock_hz in clocks a second; wall_s in seconds.
+    pruned_differ: pixels in which the model of what was built differs from that of the full design.
+    mesh: what was decided about each object of the scene. lit_facing_away: pixels that interpolated
+    normals light although their triangle turns away from the light. empty: why the picture has no
+    pixel, in words.
     """
     pixels, cycles = len(simulation.pixels.x), simulation.cycles
     mismatches = comparison.mismatches + simulation.extra_pixels
@@ -102,6 +106,8 @@ def make_report(
         "mesh": mesh,
         "lit_facing_away": lit_facing_away,
         "empty": empty,
+        "undecided": undecided,
+        "notes": list(notes),
         "config": config.as_dict(),
         "versions": versions(),
         "wall_s": wall_s,

@@ -39,7 +39,8 @@ value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All
     [materials.NAME]                # eq. (3) of the paper; up to 16
     color = [0.7, 0.6, 0.5]         # Cp
     d = 0.15                        # environmental diffuse reflection coefficient, 0 to 1
-    n = 10                          # 1 to 128, whole or not
+    n = 10                          # 0 to 128, whole or not; below 1 a curve's table takes it
+    curve = { cos = [0, 0.9, 0.9], values = [0, 0, 1] }  # in place of n: any curve of cos(s)
     W = 0.4                         # or values at equally spaced Zn = cos(i) from 0 to 1, or
     W = { degrees = [0, 60, 90], values = [0.2, 0.3, 0.8] }  # at incident angles i
     ambient = [0.1, 0.1, 0.1]       # ka; default: color times d
@@ -61,7 +62,9 @@ value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All
     two_sided = true                # of this object
     name = "my teapot"
 
-W is piecewise linear in Zn between the given points and constant beyond them. The intensity is
+W is piecewise linear in Zn between the given points and constant beyond them; so is a curve in
+cos(s). Two equal angles or cosines in a row are a jump; at the jump the value of the larger cosine
+counts. The intensity is
 
     I = e + ka Ia + sum over lights of (ka La + kd Ld cos(i) + ks Ls W(i) cos(s)**n).
 """
@@ -100,6 +103,7 @@ from phong75.model.front.mesh_files.load import MESH_SUFFIXES, load_mesh_file
 from phong75.model.front.mesh_files.materials import Materials, reduce_materials
 from phong75.model.front.mesh_files.report import MeshReport
 from phong75.model.front.mesh_normals import normals_and_areas
+from phong75.model.reflectance import Curve, Polyline, Power
 
 SCENES = Path(__file__).parent.parent / "scenes"
 TECHNIQUE_SCENES = SCENES / "techniques"
@@ -140,9 +144,11 @@ class Material:
 
     color: Cp of red, green and blue, 0 to 1.
     d: environmental diffuse reflection coefficient, 0 to 1.
-    n: specular exponent, 1 to 128.
+    n: specular exponent, 0 to 128.
     weight_zn, weight_values: points of W(i): increasing Zn = cos(i) and W there, both 0 to 1. W is
-    piecewise linear in Zn between the points and constant beyond them.
+    piecewise linear in Zn between the points and constant beyond them. Two equal Zn in a row are a
+    jump.
+    curve: the curve of cos(s) in place of cos(s)**n, values 0 to 1; None for the power.
     ambient, diffuse, specular: ka, kd, ks of OpenGL's model, 0 to 1; None for the paper's rule, by
     which they are Cp d, Cp (1 - d) and 1. emission: e, 0 to 1. two_sided: show both sides of the
     objects of this material.
@@ -158,6 +164,7 @@ class Material:
     specular: Colour | None = None
     emission: Colour = BLACK
     two_sided: bool = False
+    curve: Polyline | None = None
 
     @property
     def ka(self) -> Reals:
@@ -176,9 +183,24 @@ class Material:
         """Specular reflection of red, green and blue, float64[3]."""
         return np.array(self.specular or WHITE)
 
+    @property
+    def weight_curve(self) -> Polyline:
+        """W as a function of Zn = cos(i)."""
+        return Polyline(self.weight_zn, self.weight_values)
+
+    @property
+    def highlight(self) -> Curve:
+        """The curve of cos(s), or cos(s)**n, as a function of cos(s)."""
+        return self.curve or Power(self.n)
+
+    @property
+    def needs_curve(self) -> bool:
+        """Whether no table of powers holds the highlight."""
+        return self.curve is not None or self.n < 1
+
     def weight(self, zn: ArrayLike) -> Reals:
         """W at `zn` (any shape), float64."""
-        return np.interp(np.asarray(zn, np.float64), self.weight_zn, self.weight_values)
+        return self.weight_curve.at(zn)
 
 
 @dataclass(frozen=True)
@@ -535,14 +557,17 @@ def _material(table: _Table) -> Material:
     material = Material(
         table.triple("color", default.color, 0.0, 1.0),
         table.real("d", default.d, 0.0, 1.0),
-        table.real("n", default.n, 1.0, 128.0),
+        table.real("n", default.n, 0.0, 128.0),
         zn or default.weight_zn,
         values or default.weight_values,
         emission=table.triple("emission", BLACK, 0.0, 1.0),
         two_sided=table.boolean("two_sided", default.two_sided),
+        curve=_curve(table),
         **colours,
     )
     table.finish()
+    if material.curve and "n" in table.values:
+        raise table.error("n", "has no effect beside curve")
     for key in ("color", "d"):
         if key in table.values and colours["ambient"] and colours["diffuse"]:
             raise table.error(key, "has no effect beside ambient and diffuse")
@@ -561,8 +586,7 @@ def _weight(table: _Table) -> tuple[tuple[float, ...], tuple[float, ...]]:
         inner.finish()
         if len(degrees) != len(values):
             raise table.error("W", f"{len(degrees)} degrees, but {len(values)} values")
-        if np.any(np.diff(degrees) <= 0):
-            raise inner.error("degrees", f"= {_show(degrees)} do not increase")
+        _increasing(inner, "degrees", degrees)
         # In floating point cos(90 degrees) is not exactly 0.
         zn = [0.0 if i == 90.0 else math.cos(math.radians(i)) for i in degrees]
         return tuple(zn[::-1]), tuple(values[::-1])
@@ -573,6 +597,30 @@ def _weight(table: _Table) -> tuple[tuple[float, ...], tuple[float, ...]]:
         return tuple(np.linspace(0.0, 1.0, len(values))), tuple(values)
     constant = table.real("W", 0.0, 0.0, 1.0)
     return (0.0, 1.0), (constant, constant)
+
+
+def _curve(table: _Table) -> Polyline | None:
+    """The curve of cos(s) of a material; None if the table has none."""
+    value = table.value("curve", None)
+    if value is None:
+        return None
+    inner = table.child("curve", value)
+    cosines = inner.list_of_reals("cos", 0.0, 1.0)
+    values = inner.list_of_reals("values", 0.0, 1.0)
+    inner.finish()
+    if len(cosines) != len(values):
+        raise table.error("curve", f"{len(cosines)} cosines, but {len(values)} values")
+    _increasing(inner, "cos", cosines)
+    return Polyline(tuple(cosines), tuple(values))
+
+
+def _increasing(table: _Table, key: str, places: list[float]) -> None:
+    """Raise InputError if `places` do not increase, but for two equal ones in a row, a jump."""
+    steps = np.diff(places)
+    if np.any(steps < 0):
+        raise table.error(key, f"= {_show(places)} do not increase")
+    if np.any((steps[:-1] == 0) & (steps[1:] == 0)):
+        raise table.error(key, f"= {_show(places)} has three equal ones in a row; a jump has two")
 
 
 def _object(

@@ -17,14 +17,14 @@ or that of the face. The front end does not know how the hardware shades a verte
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from phong75.model.arrays import ArrayLike, Flags, Ints, Reals, Spans
-from phong75.model.config import Config
+from phong75.model.config import MAX_JUMPS, Config
 from phong75.model.frame import (
     SPAN_DTYPE,
     ExactFrame,
@@ -45,8 +45,19 @@ from phong75.model.front.interpolation import (
 )
 from phong75.model.front.mesh import Mesh, apply_matrix, face_normals, normalize
 from phong75.model.front.mid_edge_normals import RULES, mid_edge_normals
-from phong75.model.front.scene import WHITE, Light, Scene
+from phong75.model.front.scene import WHITE, Light, Material, Scene
 from phong75.model.front.visibility import GRID, Segments, Triangles
+from phong75.model.reflectance import (
+    Curve,
+    Polyline,
+    Power,
+    curve_distance,
+    curve_words,
+    jump_count,
+    power_words,
+    weight_distance,
+    weight_points,
+)
 from phong75.model.spans import bent_beyond
 
 
@@ -73,7 +84,8 @@ class FrontEnd:
     triangles in the scene. degenerate_triangles: number of further triangles that were left out
     because they have no area. lit_facing_away: pixels that are lit although their triangle turns
     away from the light, an effect of interpolated normals. empty: why there is no pixel, in words;
-    None if there is one.
+    None if there is one. notes: what the tables of the materials do not hold as the scene has it, a
+    line each.
     """
 
     frame: Frame
@@ -82,6 +94,7 @@ class FrontEnd:
     degenerate_triangles: int
     lit_facing_away: int = 0
     empty: str | None = None
+    notes: list[str] = field(default_factory=list)
 
     def __repr__(self) -> str:
         return f"FrontEnd({self.frame}, triangles: {self.triangles})"
@@ -137,7 +150,7 @@ def make_frame(
     if config.channels == 1 and _coloured(scene):
         raise InputError(f"{scene.name}: has colours, but the pipeline is built for grey")
     frame_axes, eye = light_frame(scene.light, scene.camera.axes[2])
-    frame, exact = _frame(scene, eye, config)
+    frame, exact, notes = _frame(scene, eye, config)
     _add_lights(scene, frame_axes, frame, exact, config)
     triangles, dark = _triangles(scene, frame_axes, frame, exact, config, shade_vertices)
 
@@ -171,6 +184,7 @@ def make_frame(
         sum(m.degenerate for m in meshes),
         lit_facing_away,
         None if parts else _why_empty(scene),
+        notes,
     )
 
 
@@ -227,12 +241,13 @@ def _screen_side(corners: Reals) -> Reals:
     return x0 * (y1 * w2 - y2 * w1) - y0 * (x1 * w2 - x2 * w1) + w0 * (x1 * y2 - x2 * y1)
 
 
-def _frame(scene: Scene, eye: Reals, config: Config) -> tuple[Frame, ExactFrame]:
-    """The picture in codes and before rounding, with registers and materials but without spans.
+def _frame(scene: Scene, eye: Reals, config: Config) -> tuple[Frame, ExactFrame, list[str]]:
+    """The picture in codes and before rounding, with registers and materials but without spans;
+    and the notes on the materials (see `FrontEnd`).
 
     eye: float64[3], unit vector to the eye in the light frame.
     """
-    table, ambient, weight, exponent = _materials(scene, config)
+    table, ambient, weight, curve, notes = _materials(scene, config)
     diffuse, highlight = _colours(scene, scene.lights[0], table, config)
     background = np.floor(np.asarray(scene.background) * (2**config.colour_bits - 1) + 0.5)
     frame = Frame(
@@ -245,9 +260,8 @@ def _frame(scene: Scene, eye: Reals, config: Config) -> tuple[Frame, ExactFrame]
         np.zeros(0, SPAN_DTYPE),
     )
     no_rows = np.zeros((0, 3))
-    return frame, ExactFrame(
-        no_rows, no_rows, no_rows, eye, ambient, diffuse, highlight, weight, exponent
-    )
+    exact = ExactFrame(no_rows, no_rows, no_rows, eye, ambient, diffuse, highlight, weight, curve)
+    return frame, exact, notes
 
 
 def _coloured(scene: Scene) -> bool:
@@ -519,27 +533,70 @@ def encode(start: Reals, step: Reals, length: ArrayLike, config: Config) -> tupl
     return first, np.clip(slope, lowest, (config.normal.max - first) // steps)
 
 
-def _materials(scene: Scene, config: Config) -> tuple[MaterialTable, Reals, Reals, Reals]:
-    """The material table in codes without colours of the lights, and the ambient part, W and n of
-    all its rows before rounding (shapes as in `ExactFrame`).
+def _materials(
+    scene: Scene, config: Config
+) -> tuple[MaterialTable, Reals, list[Curve], list[Curve], list[str]]:
+    """The material table in codes without colours of the lights; the ambient part, W and the curve
+    of cos(s) of all its rows before rounding (as in `ExactFrame`); and notes (see `FrontEnd`).
 
     Raises InputError if an ambient part does not fit its word.
     """
     table = MaterialTable.empty(config)
     ambient = np.zeros((config.materials, 3))
-    weight = np.zeros((config.materials, config.weight_points))
-    exponent = np.ones(config.materials)
-    zn = np.linspace(0.0, 1.0, config.weight_points)
+    weight: list[Curve] = [Polyline((0.0, 1.0), (0.0, 0.0))] * config.materials
+    curve: list[Curve] = [Power(1.0)] * config.materials
+    notes = []
+    if any(material.needs_curve for material in scene.materials):
+        table.curve = power_words(table.exponent, config)
+        table.curve_jumps = np.zeros((config.materials, MAX_JUMPS, 3), np.int64)
     for i, material in enumerate(scene.materials):
         light = np.sum([scene.ambient, *(light.ambient for light in scene.lights)], axis=0)
         ambient[i] = material.emission + material.ka * light
-        weight[i], exponent[i] = material.weight(zn), material.n
+        weight[i], curve[i] = material.weight_curve, material.highlight
         table.ambient[i] = _coefficients(
             ambient[i], f"ambient light of material {i}", scene, config
         )
-        table.weight[i] = config.coefficient.quantize(weight[i])
-        table.exponent[i] = config.exponent.quantize(material.n)
-    return table, ambient, weight, exponent
+        n = 1.0 if material.curve else material.n
+        table.exponent[i] = config.exponent.quantize(n)
+        notes += _reflectance(material, i, table, config)
+    return table, ambient, weight, curve, notes
+
+
+#: A table that is farther than this from the scene's W or curve gets a note, LSB.
+NOTED_LSB = 0.1
+
+
+def _reflectance(material: Material, i: int, table: MaterialTable, config: Config) -> list[str]:
+    """Set W of material `i` and, if `table` has curves, its curve of cos(s); returns notes."""
+    notes, white = [], (1 << config.colour_bits) - 1
+    points, jumps, smeared = weight_points(material.weight_curve, config)
+    table.weight[i] = points
+    if jump_count(jumps):
+        if table.weight_jumps is None:
+            table.weight_jumps = np.zeros((config.materials, MAX_JUMPS, 3), np.int64)
+        table.weight_jumps[i] = jumps
+    apart = white * weight_distance(material.weight_curve, points, jumps, config)
+    if apart > NOTED_LSB:
+        many = f", of which {MAX_JUMPS} of {len(smeared) + MAX_JUMPS} jumps" if smeared else ""
+        notes.append(
+            f"material {i}: {config.weight_points} points{many} hold W; up to {apart:.1f} LSB from "
+            "the scene's W"
+        )
+    if table.curve is None or table.curve_jumps is None:
+        return notes
+    if material.curve is None and material.n < 1:
+        notes.append(f"material {i}: n = {material.n:g} is below 1: a curve's table gives cos(s)^n")
+    words, jumps, moved = curve_words(material.highlight, config)
+    table.curve[i], table.curve_jumps[i] = words, jumps
+    apart = white * curve_distance(material.highlight, words, jumps, config)
+    if moved or apart > NOTED_LSB:
+        places = ", ".join(f"{jump.place:g}" for jump in moved)
+        where = f", the jumps at {places} at the end of a line" if moved else ""
+        notes.append(
+            f"material {i}: {len(words)} lines hold the curve of cos(s){where}; up to {apart:.1f} "
+            "LSB from the scene's curve"
+        )
+    return notes
 
 
 def _colours(

@@ -46,10 +46,7 @@ def _along(frame: Frame, exact: ExactFrame, span: Ints, k: ArrayLike, technique:
     if tessellation.SHADED[technique].technique != "phong":
         return 255 * np.clip(value, 0, 1)
     m = frame.spans["material"][span]
-    return reference.shade(
-        value, exact.ambient[m], exact.diffuse[m], exact.weight[m], exact.exponent[m],
-        exact.eye, frame.two_sided,
-    )  # fmt: skip
+    return reference.shade_exact(value, m, exact, frame.two_sided)
 
 
 def mach_bands(front: FrontEnd, technique: str, counted: np.ndarray) -> dict:

@@ -88,11 +88,10 @@ def shade(normal: Reals, scene: Scene, material: Material) -> Reals:
     """
     axes, eye = light_frame(scene.light, scene.camera.axes[2])
     cp, d = np.array(material.color), material.d
-    weight = material.weight(np.linspace(0, 1, DEFAULT.weight_points))
     ones = np.ones((len(normal), 1))
     return reference.shade(
         apply_matrix(axes, normal), ones * (cp * d), ones * (cp * (1 - d)),
-        ones * weight, ones[:, 0] * material.n, eye, scene.two_sided,
+        material.weight, material.highlight.at, eye, scene.two_sided,
     )  # fmt: skip
 
 

@@ -15,9 +15,9 @@ module phong_unit (
     input wire reset,  // synchronous
 
     // write port of registers and material table; write between frames only
-    input wire                                                   write_enable,   // 1: write
-    input wire [`PHONG_MATERIAL_BITS+`PHONG_WEIGHT_INDEX_BITS:0] write_address,  // see register_map
-    input wire [2*`PHONG_COEFFICIENT_BITS:0]                     write_word,     // see register_map
+    input wire                               write_enable,   // 1: write
+    input wire [`PHONG_ADDRESS_BITS-1:0]     write_address,  // see register_map, reflectance_map
+    input wire [2*`PHONG_COEFFICIENT_BITS:0] write_word,     // see register_map
 
     // offered span
     input wire                            taken,     // the span is accepted in this cycle
@@ -59,6 +59,9 @@ module phong_unit (
   localparam UNIT_BITS        = `PHONG_UNIT_BITS;
   localparam COSINE_BITS      = `PHONG_COSINE_BITS;
   localparam VERSINE_BITS     = `PHONG_VERSINE_BITS;
+  localparam SEGMENT_BITS     = `PHONG_SEGMENT_BITS;
+  localparam HAS_CURVES       = `PHONG_HAS_CURVES;      // 1: any curve in place of cos(s)^n
+  localparam WEIGHT_JUMPS     = `PHONG_WEIGHT_JUMPS;    // 0: W is continuous
   localparam INTERPOLATE_X    = `PHONG_INTERPOLATE_X;   // 0: the component is constant over a span
   localparam INTERPOLATE_Y    = `PHONG_INTERPOLATE_Y;
   localparam INTERPOLATE_Z    = `PHONG_INTERPOLATE_Z;
@@ -72,11 +75,35 @@ module phong_unit (
   wire [MATERIAL_BITS+INDEX_BITS-1:0] table_address;
   wire [2*COEFFICIENT_BITS:0] table_word;
   wire unsupported_write, unsupported_span;
+  wire plain_enable, write_curve;
+  wire [MATERIAL_BITS+SEGMENT_BITS-1:0] write_line;
+  wire [2*`PHONG_MAX_JUMPS-1:0] write_curve_jumps, write_weight_jumps;
+
+  generate
+    if (HAS_CURVES || WEIGHT_JUMPS > 0) begin : gen_reflectance
+      reflectance_map u_reflectance_map (
+          .clk(clk),
+          .write_enable(write_enable),
+          .write_address(write_address),
+          .plain_enable(plain_enable),
+          .write_curve(write_curve),
+          .write_line(write_line),
+          .write_curve_jumps(write_curve_jumps),
+          .write_weight_jumps(write_weight_jumps)
+      );
+    end else begin : gen_no_reflectance
+      assign plain_enable = write_enable;
+      assign write_curve = 1'b0;
+      assign write_line = {MATERIAL_BITS + SEGMENT_BITS{1'b0}};
+      assign write_curve_jumps = {2 * `PHONG_MAX_JUMPS{1'b0}};
+      assign write_weight_jumps = {2 * `PHONG_MAX_JUMPS{1'b0}};
+    end
+  endgenerate
 
   register_map u_register_map (
       .clk(clk),
-      .write_enable(write_enable),
-      .write_address(write_address),
+      .write_enable(plain_enable),
+      .write_address(write_address[MATERIAL_BITS+INDEX_BITS:0]),
       .write_word(write_word),
       .half_x(half_x),
       .half_z(half_z),
@@ -321,6 +348,10 @@ module phong_unit (
       .write_exponent(write_exponent),
       .write_ambient(write_ambient),
       .write_diffuse(write_diffuse),
+      .write_curve(write_curve),
+      .write_line(write_line),
+      .write_curve_jumps(write_curve_jumps),
+      .write_weight_jumps(write_weight_jumps),
       .write_address(table_address),
       .write_word(table_word),
       .unit_x(unit_x),

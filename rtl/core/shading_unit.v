@@ -23,6 +23,12 @@ module shading_unit (
     input wire [2:0] write_ambient,   // Cp d of {blue, green, red}
     input wire [2:0] write_diffuse,   // Cp (1 - d) of {blue, green, red}
 
+    // write port of curves and jumps, from reflectance_map
+    input wire                                                write_curve,
+    input wire [`PHONG_MATERIAL_BITS+`PHONG_SEGMENT_BITS-1:0] write_line,
+    input wire [2*`PHONG_MAX_JUMPS-1:0]                       write_curve_jumps,
+    input wire [2*`PHONG_MAX_JUMPS-1:0]                       write_weight_jumps,
+
     // its address: {material, interval or field}; its word: {step s1.16, left u1.16} of W(i),
     // n in u8.9, Cp d or Cp (1 - d) in u1.16
     input wire [`PHONG_MATERIAL_BITS+`PHONG_WEIGHT_INDEX_BITS-1:0] write_address,
@@ -59,6 +65,8 @@ module shading_unit (
   localparam SPECULAR             = `PHONG_SPECULAR;           // 0: no highlight
   localparam POWER_FUNCTION       = `PHONG_POWER_FUNCTION;     // 0: n is always 1
   localparam WEIGHT_FUNCTION      = `PHONG_WEIGHT_FUNCTION;    // 0: W does not depend on i
+  localparam HAS_CURVES           = `PHONG_HAS_CURVES;         // 1: any curve in place of cos(s)^n
+  localparam WEIGHT_JUMPS         = `PHONG_WEIGHT_JUMPS;       // 0: W is continuous
   localparam CONSTANT_EXPONENT    = `PHONG_CONSTANT_EXPONENT;  // 1: n is a constant of the build
   localparam CONSTANT_WEIGHT      = `PHONG_CONSTANT_WEIGHT;    // 1: W is a constant of the build
   localparam LATENCY              = `PHONG_SHADING_UNIT_LATENCY;
@@ -66,7 +74,7 @@ module shading_unit (
   // Cycles from the input to the use of cos(s)^n, n and W(i).
   localparam POWER_AT = `PHONG_SPECULAR_LATENCY;
   localparam EXPONENT_AT = `PHONG_HIGHLIGHT_LATENCY + `PHONG_EXPONENT_LATENCY;
-  localparam WEIGHT_AT = POWER_AT - `PHONG_SPECULAR_WEIGHT_LATENCY;
+  localparam WEIGHT_AT = POWER_AT - `PHONG_WEIGHT_LATENCY;
 
   // Cycles from the input to the look-ups by material, EXPONENT_FROM first and COLOUR_FROM last.
   localparam COLOUR_FROM = POWER_AT - `PHONG_SMALL_RAM_LATENCY;
@@ -179,7 +187,9 @@ module shading_unit (
       if (POWER_FUNCTION) begin : gen_power
         wire [EXPONENT_BITS-1:0] exponent;
 
-        if (CONSTANT_EXPONENT) begin : gen_constant_exponent
+        if (HAS_CURVES) begin : gen_no_exponent
+          assign exponent = {EXPONENT_BITS{1'b0}};
+        end else if (CONSTANT_EXPONENT) begin : gen_constant_exponent
           assign exponent = `PHONG_CONSTANT_EXPONENT_N;
         end else begin : gen_exponent
           small_ram #(
@@ -199,7 +209,13 @@ module shading_unit (
             .clk(clk),
             .versine(versine),
             .exponent(exponent),
-            .power(power)
+            .power(power),
+            .write_curve(write_curve),
+            .write_line(write_line),
+            .write_jumps(write_curve_jumps),
+            .write_material(write_material),
+            .write_word(write_word),
+            .material(material_exponent)
         );
       end else begin : gen_cosine
         specular_cosine u_specular_cosine (
@@ -209,7 +225,18 @@ module shading_unit (
         );
       end
 
-      if (WEIGHT_FUNCTION) begin : gen_weight
+      if (WEIGHT_FUNCTION && WEIGHT_JUMPS > 0) begin : gen_stepped_weight
+        stepped_weight u_stepped_weight (
+            .clk(clk),
+            .write_enable(write_weight),
+            .write_jumps(write_weight_jumps),
+            .write_address(write_address),
+            .write_word(write_word),
+            .material(material_weight),
+            .cosine(cosine_weight),
+            .weight(weight)
+        );
+      end else if (WEIGHT_FUNCTION) begin : gen_weight
         specular_weight u_specular_weight (
             .clk(clk),
             .write_enable(write_weight),
@@ -279,6 +306,9 @@ module shading_unit (
       assign specular = {WEIGHT_BITS + POWER_BITS{1'b0}};
     end
   endgenerate
+
+  wire unused_reflectance =
+      &{1'b0, write_curve, write_line, write_curve_jumps, write_weight_jumps};
 
   // ---- red, green, blue ----
   wire [CHANNELS*COLOUR_BITS-1:0] colour;

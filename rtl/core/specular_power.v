@@ -13,7 +13,16 @@ module specular_power (
     input  wire                            clk,
     input  wire [`PHONG_VERSINE_BITS-1:0]  versine,   // u0.22, 1 - cos(s)
     input  wire [`PHONG_EXPONENT_BITS-1:0] exponent,  // u8.9, n, later than `versine`
-    output wire [`PHONG_POWER_BITS-1:0]    power      // u0.18, cos(s)^n
+    output wire [`PHONG_POWER_BITS-1:0]    power,     // u0.18, cos(s)^n
+
+    // curves only: write port, see reflectance_table; the pixel's material, which comes
+    // PHONG_SMALL_RAM_LATENCY cycles before `exponent` would
+    input wire                                                write_curve,
+    input wire [`PHONG_MATERIAL_BITS+`PHONG_SEGMENT_BITS-1:0] write_line,
+    input wire [2*`PHONG_MAX_JUMPS-1:0]                       write_jumps,
+    input wire [`PHONG_MATERIAL_BITS-1:0]                     write_material,
+    input wire [2*`PHONG_COEFFICIENT_BITS:0]                  write_word,
+    input wire [`PHONG_MATERIAL_BITS-1:0]                     material  // index
 );
 
   localparam METHOD  = `PHONG_POWER_METHOD;
@@ -34,6 +43,18 @@ module specular_power (
           .exponent(exponent),
           .power(power)
       );
+    end else if (METHOD == `PHONG_POWER_METHOD_CURVE) begin : gen_curve
+      reflectance_table u_method (
+          .clk(clk),
+          .write_curve(write_curve),
+          .write_line(write_line),
+          .write_jumps(write_jumps),
+          .write_material(write_material),
+          .write_word(write_word),
+          .versine(versine),
+          .material(material),
+          .power(power)
+      );
     end else begin : gen_schlick
       specular_power_schlick u_method (
           .clk(clk),
@@ -43,6 +64,9 @@ module specular_power (
       );
     end
   endgenerate
+
+  wire unused = &{1'b0, exponent, write_curve, write_line, write_jumps, write_material, write_word,
+                  material};
 
 endmodule
 

@@ -12,6 +12,11 @@ module light_highlight (
 
     // write port of W(i), from register_map
     input wire                                                     write_weight,
+    // and of curves and jumps, from reflectance_map
+    input wire                                                     write_curve,
+    input wire [`PHONG_MATERIAL_BITS+`PHONG_SEGMENT_BITS-1:0]      write_line,
+    input wire [2*`PHONG_MAX_JUMPS-1:0]                            write_curve_jumps,
+    input wire [2*`PHONG_MAX_JUMPS-1:0]                            write_weight_jumps,
     input wire [`PHONG_MATERIAL_BITS+`PHONG_WEIGHT_INDEX_BITS-1:0] write_address,
     input wire [2*`PHONG_COEFFICIENT_BITS:0]                       write_word,
 
@@ -48,11 +53,13 @@ module light_highlight (
   localparam HIGHLIGHT_COLOUR     = `PHONG_HIGHLIGHT_COLOUR;
   localparam POWER_FUNCTION       = `PHONG_POWER_FUNCTION;   // 0: n is always 1
   localparam WEIGHT_FUNCTION      = `PHONG_WEIGHT_FUNCTION;  // 0: W does not depend on i
+  localparam HAS_CURVES           = `PHONG_HAS_CURVES;       // 1: any curve in place of cos(s)^n
+  localparam WEIGHT_JUMPS         = `PHONG_WEIGHT_JUMPS;     // 0: W is continuous
   localparam LATENCY              = `PHONG_LIGHT_HIGHLIGHT_LATENCY;
 
   // Cycles from the input to the use of W(i) and cos(s)^n, and to the look-up of W.
   localparam POWER_AT = `PHONG_HIGHLIGHT_LATENCY + `PHONG_POWER_LATENCY;
-  localparam WEIGHT_AT = POWER_AT - (WEIGHT_FUNCTION ? `PHONG_SPECULAR_WEIGHT_LATENCY
+  localparam WEIGHT_AT = POWER_AT - (WEIGHT_FUNCTION ? `PHONG_WEIGHT_LATENCY
                                                      : `PHONG_SMALL_RAM_LATENCY);
   localparam PRODUCT_BITS = WEIGHT_BITS + POWER_BITS;
 
@@ -72,11 +79,32 @@ module light_highlight (
 
   generate
     if (POWER_FUNCTION) begin : gen_power
+      wire [MATERIAL_BITS-1:0] material_curve;
+
+      if (HAS_CURVES) begin : gen_curve
+        delay #(
+            .BITS  (MATERIAL_BITS),
+            .CYCLES(`PHONG_HIGHLIGHT_LATENCY + `PHONG_CURVE_OCTAVE_LATENCY)
+        ) u_material (
+            .clk(clk),
+            .in (material),
+            .out(material_curve)
+        );
+      end else begin : gen_no_curve
+        assign material_curve = {MATERIAL_BITS{1'b0}};
+      end
+
       specular_power u_specular_power (
           .clk(clk),
           .versine(versine),
           .exponent(exponent),
-          .power(power)
+          .power(power),
+          .write_curve(write_curve),
+          .write_line(write_line),
+          .write_jumps(write_curve_jumps),
+          .write_material(write_address[INDEX_BITS+:MATERIAL_BITS]),
+          .write_word(write_word),
+          .material(material_curve)
       );
     end else begin : gen_cosine
       specular_cosine u_specular_cosine (
@@ -104,7 +132,18 @@ module light_highlight (
   );
 
   generate
-    if (WEIGHT_FUNCTION) begin : gen_weight
+    if (WEIGHT_FUNCTION && WEIGHT_JUMPS > 0) begin : gen_stepped_weight
+      stepped_weight u_stepped_weight (
+          .clk(clk),
+          .write_enable(write_weight),
+          .write_jumps(write_weight_jumps),
+          .write_address(write_address),
+          .write_word(write_word),
+          .material(material_weight),
+          .cosine(cosine_weight),
+          .weight(weight)
+      );
+    end else if (WEIGHT_FUNCTION) begin : gen_weight
       specular_weight u_specular_weight (
           .clk(clk),
           .write_enable(write_weight),
@@ -134,6 +173,9 @@ module light_highlight (
       wire unused = &{1'b0, cosine_weight, write_address, write_word};
     end
   endgenerate
+
+  wire unused_reflectance =
+      &{1'b0, write_curve, write_line, write_curve_jumps, write_weight_jumps};
 
   wire [PRODUCT_BITS-1:0] product;  // u1.35
 

@@ -73,6 +73,9 @@ module lights_unit #(
   localparam CHANNELS         = `PHONG_CHANNELS;        // 3: red, green, blue; 1: grey
   localparam SPECULAR         = `PHONG_SPECULAR;        // 0: no highlight
   localparam POWER_FUNCTION   = `PHONG_POWER_FUNCTION;  // 0: n is always 1
+  localparam SEGMENT_BITS     = `PHONG_SEGMENT_BITS;
+  localparam HAS_CURVES       = `PHONG_HAS_CURVES;      // 1: any curve in place of cos(s)^n
+  localparam WEIGHT_JUMPS     = `PHONG_WEIGHT_JUMPS;    // 0: W is continuous
   localparam HIGHLIGHT_BITS   = `PHONG_HIGHLIGHT_COLOUR ? `PHONG_HIGHLIGHT_BITS
                                                         : `PHONG_WEIGHT_BITS + `PHONG_POWER_BITS;
 
@@ -101,9 +104,34 @@ module lights_unit #(
   wire unsupported_write, unsupported_light, unsupported_span;
   wire [2*HALF_BITS-1:0] unused_half;  // register_map holds one; here each light has its own
 
+  wire plain_enable, write_curve;
+  wire [MATERIAL_BITS+SEGMENT_BITS-1:0] write_line;
+  wire [2*`PHONG_MAX_JUMPS-1:0] write_curve_jumps, write_weight_jumps;
+
+  generate
+    if (HAS_CURVES || WEIGHT_JUMPS > 0) begin : gen_reflectance
+      reflectance_map u_reflectance_map (
+          .clk(clk),
+          .write_enable(write_enable),
+          .write_address(write_address),
+          .plain_enable(plain_enable),
+          .write_curve(write_curve),
+          .write_line(write_line),
+          .write_curve_jumps(write_curve_jumps),
+          .write_weight_jumps(write_weight_jumps)
+      );
+    end else begin : gen_no_reflectance
+      assign plain_enable = write_enable;
+      assign write_curve = 1'b0;
+      assign write_line = {MATERIAL_BITS + SEGMENT_BITS{1'b0}};
+      assign write_curve_jumps = {2 * `PHONG_MAX_JUMPS{1'b0}};
+      assign write_weight_jumps = {2 * `PHONG_MAX_JUMPS{1'b0}};
+    end
+  endgenerate
+
   register_map u_register_map (
       .clk(clk),
-      .write_enable(write_enable),
+      .write_enable(plain_enable),
       .write_address(write_address[ADDRESS_BITS:0]),
       .write_word(write_word),
       .half_x(unused_half[HALF_BITS-1:0]),
@@ -120,8 +148,8 @@ module lights_unit #(
 
   light_map u_light_map (
       .clk(clk),
-      .write_enable(write_enable),
-      .write_address(write_address),
+      .write_enable(plain_enable),
+      .write_address(write_address[`PHONG_LIGHT_BITS+ADDRESS_BITS:0]),
       .write_word(write_word),
       .last_turn(last_turn),
       .write_half_x(write_half_x),
@@ -280,7 +308,7 @@ module lights_unit #(
   wire [EXPONENT_BITS-1:0] exponent;
 
   generate
-    if (SPECULAR && POWER_FUNCTION) begin : gen_exponent
+    if (SPECULAR && POWER_FUNCTION && !HAS_CURVES) begin : gen_exponent
       delay #(
           .BITS  (MATERIAL_BITS),
           .CYCLES(EXPONENT_AT - `PHONG_SMALL_RAM_LATENCY)
@@ -436,6 +464,10 @@ module lights_unit #(
         light_highlight u_light_highlight (
             .clk(clk),
             .write_weight(write_weight),
+            .write_curve(write_curve),
+            .write_line(write_line),
+            .write_curve_jumps(write_curve_jumps),
+            .write_weight_jumps(write_weight_jumps),
             .write_address(table_address),
             .write_word(table_word),
             .half_x(half_x),

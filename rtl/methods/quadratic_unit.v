@@ -46,6 +46,7 @@ module quadratic_unit (
   localparam NORMAL_BITS      = `PHONG_NORMAL_BITS;
   localparam SQUARED_BITS     = `PHONG_SQUARED_BITS;
   localparam MATERIAL_BITS    = `PHONG_MATERIAL_BITS;
+  localparam SEGMENT_BITS     = `PHONG_SEGMENT_BITS;
   localparam COEFFICIENT_BITS = `PHONG_COEFFICIENT_BITS;
   localparam INDEX_BITS       = `PHONG_WEIGHT_INDEX_BITS;
   localparam HALF_BITS        = `PHONG_HALF_VECTOR_BITS;
@@ -154,6 +155,10 @@ module quadratic_unit (
       .write_exponent(write_exponent),
       .write_ambient(write_ambient),
       .write_diffuse(write_diffuse),
+      .write_curve(1'b0),
+      .write_line({MATERIAL_BITS + SEGMENT_BITS{1'b0}}),
+      .write_curve_jumps({2 * `PHONG_MAX_JUMPS{1'b0}}),
+      .write_weight_jumps({2 * `PHONG_MAX_JUMPS{1'b0}}),
       .write_address(table_address),
       .write_word(table_word),
       .unit_x({UNIT_BITS{1'b0}}),

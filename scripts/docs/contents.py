@@ -139,6 +139,8 @@ TABLES: dict[str, Callable[[], str]] = {
     "hardware": lambda: tables.hardware(tables.hardware_rows(tables.HARDWARE)),
     "tests": lambda: tables.hardware(tables.hardware_rows(tables.TESTS)),
     "speed": lambda: tables.hardware(tables.hardware_rows(tables.SPEED)),
+    "reflectance": lambda: tables.reflectance(_record("reflectance"), _record("synth-grade6")),
+    "curve-powers": facts.curve_powers,
     "shapes": facts.shapes,
     "proofs": facts.proofs,
     "lut-counts": lambda: tables.lut_counts(_synthesis("resources")),

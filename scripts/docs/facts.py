@@ -24,6 +24,7 @@ from phong75.model.config import DEFAULT as C
 from phong75.model.config import TECHNIQUES, Config, Format
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
 from phong75.model.front.scene import SHAPES
+from phong75.model.reflectance import Power, curve_distance, curve_words
 from phong75.model.studies import corner_cases
 from phong75.model.studies.methods import points
 from phong75.scripts.docs.tables import markdown
@@ -260,6 +261,16 @@ def configurations() -> str:
     rows = [(f"`{p.config.name}`", p.method, p.label) for p in points()]
     rows += [(f"`{name}`", "technique", name) for name in TECHNIQUES if name != "phong"]
     return markdown(("configuration", "method", "size"), rows, left=3)
+
+
+def curve_powers() -> str:
+    """How far powers by table are from cos(s)**n; see docs/reflectance.md."""
+    rows = []
+    for n in (0, 0.25, 0.5, 0.75, 1, 1.5, 2, 5, 10, 32, 128):
+        words, jumps, _ = curve_words(Power(n), C)
+        apart = 255 * curve_distance(Power(n), words, jumps, C)
+        rows.append((f"{n:g}", f"{apart:.3f}"))
+    return markdown(("n", "largest distance, LSB"), rows, left=1)
 
 
 def features() -> str:

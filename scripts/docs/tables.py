@@ -41,6 +41,23 @@ def logic(records: Iterable[dict[str, Any]]) -> tuple[str, str]:
     return ("lut_cells", "LUT cells (Yosys)") if some else ("lut_sites", "LUT sites")
 
 
+# -- builds by name --------------------------------------------------------------------------------
+
+
+def reflectance(record: dict[str, Any], default: dict[str, Any]) -> str:
+    """Builds with curves and jumps on the chip. default: figures of the default build."""
+    first = {"clock_mhz": default["clock_mhz"]["median"], "resources": default["resources"]}
+    rows = []
+    for name, build in {"default": first, **record}.items():
+        used = build["resources"]
+        rows.append((
+            f"`{name}`", str(used["dsp"]), str(used["ebr"]), str(used["lut_sites"]),
+            str(used["ff"]), number(build["clock_mhz"]),
+        ))  # fmt: skip
+    header = ("build", "multipliers", "block RAMs", "LUT sites", "flip-flops", "clock, MHz")
+    return markdown(header, rows)
+
+
 # -- scenes ----------------------------------------------------------------------------------------
 
 

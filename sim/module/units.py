@@ -88,6 +88,8 @@ _MANTISSAS = tuple(
 _LOG_VALUE = _sum(ZEROS, SHIFT, ROM)
 _LOG = L.format("LOG")
 _X = _sum(_LOG, MUL, 3)
+_OCTAVE = L.format("CURVE_OCTAVE")
+_FALL = "`PHONG_STEPPED_LINE_FALL"
 _LINE = _sum(_X, ROM, L.format("NARROW_MULTIPLIER"), 1)
 
 MODULES = {
@@ -133,7 +135,10 @@ MODULES = {
         (Stage("light_highlight.round", ("highlight",), L.format("LIGHT_HIGHLIGHT")),),
         held=(
             ("half_x", "`PHONG_HALF_VECTOR_BITS"), ("half_z", "`PHONG_HALF_VECTOR_BITS"),
-            ("write_weight", 1), *_TABLE_PORTS,
+            ("write_weight", 1), ("write_curve", 1),
+            ("write_line", "`PHONG_MATERIAL_BITS + `PHONG_SEGMENT_BITS"),
+            ("write_curve_jumps", "2 * `PHONG_MAX_JUMPS"),
+            ("write_weight_jumps", "2 * `PHONG_MAX_JUMPS"), *_TABLE_PORTS,
         ),
         children=(
             Child("u_reflection", "reflection", "0"),
@@ -366,6 +371,45 @@ MODULES = {
         ),
         held=(("write_enable", 1), *_TABLE_PORTS),
     ),
+    "reflectance_map": Module(
+        ("write_enable", "write_address"),
+        (
+            Stage("reflectance_map.plain", ("plain_enable",), "0"),
+            Stage(
+                "reflectance_map.strobes",
+                ("write_curve", "write_line", "write_curve_jumps", "write_weight_jumps"), "1",
+            ),
+        ),
+    ),
+    "reflectance_table": Module(
+        ("versine", "material", "write_curve", "write_line", "write_jumps", "write_material",
+         "write_word"),
+        (
+            Stage("reflectance_table.octave", ("place_p4",), _OCTAVE),
+            Stage(
+                "reflectance_table.lookup",
+                ("word_p7[0+:`PHONG_COEFFICIENT_BITS]",
+                 "+word_p7[`PHONG_COEFFICIENT_BITS+:`PHONG_COEFFICIENT_BITS+1]", "offset_p7"),
+                _sum(_OCTAVE, L.format("RAM"), 1),
+            ),
+            Stage(
+                "reflectance_table.level", ("+u_line.level_p4",),
+                _sum(_OCTAVE, L.format("RAM"), 1, _FALL, 1),
+            ),
+            Stage("reflectance_table.result", ("power",), L.format("REFLECTANCE_TABLE")),
+        ),
+        late={"material": _OCTAVE},
+    ),
+    "stepped_weight": Module(
+        ("cosine", "material", "write_enable", "write_jumps", "write_address", "write_word"),
+        (
+            Stage("stepped_weight.lookup", ("left_p2", "+step_p2", "offset_p2"), L.format("RAM")),
+            Stage(
+                "stepped_weight.level", ("+u_line.level_p4",), _sum(L.format("RAM"), _FALL, 1)
+            ),
+            Stage("stepped_weight.result", ("weight",), L.format("STEPPED_WEIGHT")),
+        ),
+    ),
     "shading_unit": Module(
         ("unit_x", "unit_y", "unit_z", "cosine", "lit", "material"),
         (
@@ -379,7 +423,10 @@ MODULES = {
         held=(
             ("half_x", "`PHONG_HALF_VECTOR_BITS"), ("half_z", "`PHONG_HALF_VECTOR_BITS"),
             ("write_weight", 1), ("write_exponent", 1), ("write_ambient", 3),
-            ("write_diffuse", 3), *_TABLE_PORTS,
+            ("write_diffuse", 3), ("write_curve", 1),
+            ("write_line", "`PHONG_MATERIAL_BITS + `PHONG_SEGMENT_BITS"),
+            ("write_curve_jumps", "2 * `PHONG_MAX_JUMPS"),
+            ("write_weight_jumps", "2 * `PHONG_MAX_JUMPS"), *_TABLE_PORTS,
         ),
         children=(
             Child("gen_specular.gen_reflection.u_reflection", "reflection", "0"),

@@ -21,14 +21,23 @@ _LIGHTS = {
     "lights_8": Config(name="lights_8", lights=8, highlight_colour=True),
 }
 
+#: Builds with curves of cos(s) by table, and with jumps.
+_REFLECTANCE = {
+    "jumps": Config(name="jumps", power_method="curve", curve_jumps=4, weight_jumps=4),
+    "jump": Config(
+        name="jump", power_method="curve", curve_jumps=1, weight_jumps=1, idle_material_bits=3
+    ),
+}
+
 #: {name: configuration}: what the benches are built in.
-BUILDS = CONFIGS | _LIGHTS
+BUILDS = CONFIGS | _LIGHTS | _REFLECTANCE
 
 #: <module>@<name of BUILDS>: modules that have further branches in that configuration.
 _VARIANTS = (
     "inverse_sqrt_iterated@fast_inverse_1", "specular_power_squaring@squaring_14",
     "quadratic_normalizer@quadratic_spans_14", "light_highlight@lights_8", "light_terms@lights_8",
-    "context_interpolator@lights_8",
+    "context_interpolator@lights_8", "reflectance_map@jumps", "reflectance_table@jumps",
+    "reflectance_table@jump", "stepped_weight@jumps",
 )  # fmt: skip
 
 #: The benches of the whole design's control and pipeline, and their top levels.
@@ -79,7 +88,7 @@ def module_bench(name: str) -> ModuleBench:
     if module in MODULES:
         top, text = bench_source(module)
         folder = module_file(module).parent.name
-        tests = folder if folder in ("methods", "lights") else "datapath"
+        tests = folder if folder in ("methods", "lights", "reflectance") else "datapath"
         return ModuleBench(
             name, top, f"tests.modules.{tests}", {f"{top}.v": text}, BUILDS[config or "default"]
         )

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from phong75.model.config import Config
 from phong75.model.registers import FIELDS
+from phong75.model.twin.reflectance.reflectance_map import reflectance_map
 
 
 class Destination(NamedTuple):
@@ -29,7 +30,7 @@ def register_map(address: int, config: Config) -> Destination:
     """Decode `address` of the write port."""
     index = address & ((1 << config.weight_index_bits) - 1)
     material = address >> config.weight_index_bits & (config.materials - 1)
-    if address >> (config.material_bits + config.weight_index_bits) == 0:
+    if address >> (config.material_bits + config.weight_index_bits) & 1 == 0:
         return Destination("weight", material, index)
     for name, first in FIELDS.items():
         colours = 3 if name in ("ambient", "diffuse", "highlight") else 1
@@ -44,7 +45,7 @@ def unsupported_write(address: int, word: int, built: Config) -> bool:
     Flagged is a word that asks for what `built` leaves out, or that differs from a constant of
     `built`. The techniques without registers are not covered.
     """
-    if built.technique != "phong":
+    if built.technique != "phong" or not reflectance_map(address, built).plain:
         return False
     to = register_map(address, built)
     if to.name == "weight":

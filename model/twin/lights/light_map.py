@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from phong75.model.config import Config
 from phong75.model.twin.core.register_map import register_map, unsupported_write
+from phong75.model.twin.reflectance.reflectance_map import reflectance_map
 
 #: Fields that each light has for itself.
 OF_A_LIGHT = ("diffuse", "highlight", "half_x", "half_z")
@@ -30,7 +31,7 @@ def light_map(address: int, config: Config) -> LightDestination:
     """Decode `address` of the write port."""
     below = 1 + config.material_bits + config.weight_index_bits
     to = register_map(address & ((1 << below) - 1), config)
-    light = address >> below if to.name in OF_A_LIGHT else 0
+    light = address >> below & ((1 << config.light_bits) - 1) if to.name in OF_A_LIGHT else 0
     return LightDestination(light, *to)
 
 
@@ -41,6 +42,8 @@ def unsupported_light_write(address: int, word: int, built: Config) -> bool:
     than are built, and a coloured highlight that is left out.
     """
     below = 1 + built.material_bits + built.weight_index_bits
+    if not reflectance_map(address, built).plain:
+        return False
     if unsupported_write(address & ((1 << below) - 1), word, built):
         return True
     to = light_map(address, built)
