@@ -46,7 +46,7 @@ def _sides(frame: Frame, config: Config, rounded: bool) -> reference.Sides:
         for light, its_reach in zip(lights, reach, strict=True):
             dv = error_budget.versine(v, light.half_vector, config, reach=its_reach)
             relative, absolute = error_budget.half_vector_cross(
-                light.half_vector, config, its_reach
+                light.half_vector, config, reach=its_reach
             )
             w, extra = np.sqrt(v / 2), unit + (config.half_vector.lsb if rounded else 0.0)
             dw = relative * w + absolute + extra
