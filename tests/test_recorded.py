@@ -80,6 +80,19 @@ REPORT = {
 }  # fmt: skip
 
 
+def test_synth_records_configurations_with_more_built_in_side_by_side(results, monkeypatch):
+    monkeypatch.setattr(
+        synth.ecp5, "run",
+        lambda config, *given: REPORT | {"config": config.name, "seeds": REPORT["seeds"] * 3},
+    )  # fmt: skip
+    for name in ("quadratic_normals", "hold_unlit"):
+        assert main.main(["synth", f"--config={name}", "--seeds=3", "--record"]) == 0
+    assert [path.name for path in results.iterdir()] == ["synth-more.json"]
+    kept = recorded.figures("synth-more")["configurations"]
+    assert list(kept) == ["quadratic_normals", "hold_unlit"]
+    assert kept["hold_unlit"]["resources"] == REPORT["resources"]
+
+
 def test_synth_records_the_default_configuration_with_as_many_seeds(results, monkeypatch, capsys):
     monkeypatch.setattr(
         synth.ecp5, "run", lambda *given: REPORT | {"seeds": REPORT["seeds"] * len(given[2])}

@@ -197,7 +197,7 @@ def test_mach_bands_vanish_where_the_edge_is_none():
 
 
 def test_turning_changes_what_is_only_the_meshs():
-    found, maps, curves = artifact_runs.flicker({"sphere": 16}, 3, SIZE)
+    found, maps, curves = artifact_runs.flicker({"sphere": 16}, 3, SIZE, tuple(TECHNIQUES))
     by = found["sphere"]
     changes = [by[t]["change_rms"] for t in ("phong", "gouraud", "flat")]
     assert changes == sorted(changes) and changes[0] < changes[1] / 1.5

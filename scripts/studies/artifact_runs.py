@@ -61,12 +61,14 @@ def mach(levels=LEVELS, size=tessellation.SIZE) -> dict:
     return out
 
 
-def flicker(turning=TURNING, count: int = FRAMES, size=FLICKER_SIZE) -> tuple[dict, dict, dict]:
+def flicker(
+    turning=TURNING, count: int = FRAMES, size=FLICKER_SIZE, techniques=FLICKERING
+) -> tuple[dict, dict, dict]:
     """{shape: {technique: changes}}, and what `charts.flicker_chart` shows."""
     out: dict = {}
     maps, curves = {}, {}
     for shape, level in turning.items():
-        for technique in FLICKERING:
+        for technique in techniques:
             frames = list(shading_artifacts.turning(shape, level, technique, count, size))
             pixels = shaded_by_rtl(frames, technique)
             out.setdefault(shape, {})[technique] = shading_artifacts.flicker(frames, pixels)
