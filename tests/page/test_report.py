@@ -592,7 +592,7 @@ def test_nothing_is_without_a_name(visit, html):
 def test_a_page_without_any_result(visit, tmp_path, monkeypatch):
     monkeypatch.setattr(recorded, "FOLDER", tmp_path)
     page = visit(report.page(tmp_path))
-    assert page.locator(".missing:visible").count() == 9
+    assert page.locator(".missing:visible").count() == 10
 
 
 def test_every_bundled_scene_has_a_place(monkeypatch, tmp_path):
