@@ -141,6 +141,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "speed": lambda: tables.hardware(tables.hardware_rows(tables.SPEED)),
     "reflectance": lambda: tables.reflectance(_record("reflectance"), _record("synth-grade6")),
     "curve-powers": facts.curve_powers,
+    "lights": lambda: tables.lights(_record("lights")),
     "shapes": facts.shapes,
     "proofs": facts.proofs,
     "lut-counts": lambda: tables.lut_counts(_synthesis("resources")),
