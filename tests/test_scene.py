@@ -41,16 +41,9 @@ def on_screen(scene):
 
 def test_bundled_scenes():
     assert set(bundled_scenes()) == {
-        "coloured_lights",
-        "cone",
-        "lamps",
-        "pyramid",
-        "sphere",
-        "still_life",
-        "teapot",
-        "toon",
+        "coloured_lights", "cone", "lamps", "pyramid", "sphere", "still_life", "teapot", "toon",
         "torus",
-    }
+    }  # fmt: skip
     for name in bundled_scenes():
         scene = load_scene(name)
         assert (scene.name, scene.width, scene.height) == (name, 640, 480)

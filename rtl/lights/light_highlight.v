@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // light_highlight: W(i) cos(s)^n of one light; rounded to a word if it is to be coloured.
-// Latency: LATENCY cycles (PHONG_LIGHT_HIGHLIGHT_LATENCY in latency.vh).
+// Latency: LATENCY cycles (PHONG_LIGHT_HIGHLIGHT_LATENCY in latency.vh; 44 by default).
 // Throughput: one result per cycle.
 // Reset: none; the table is undefined until written.
 `default_nettype none

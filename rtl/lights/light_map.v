@@ -113,7 +113,8 @@ module light_map #(
       .out(unsupported)
   );
 
-  wire unused = &{1'b0, padded, its_turn, its_unit, turns, write_word[2*COEFFICIENT_BITS:COEFFICIENT_BITS]};
+  wire unused = &{1'b0, padded, its_turn, its_unit, turns,
+                  write_word[2*COEFFICIENT_BITS:COEFFICIENT_BITS]};
 
 endmodule
 
