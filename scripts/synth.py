@@ -76,6 +76,11 @@ def figures(report: dict) -> dict:
 BUILDS = {"lights": LIGHT_BUILDS, "reflectance": CURVE_BUILDS}
 
 
+def record_of(config: Config) -> str:
+    """The record that has a row for the build `config`; "" if none has."""
+    return next((name for name, builds in BUILDS.items() if config.name in builds), "")
+
+
 def record_build(report: dict, name: str) -> None:
     """Record what `report` found of a build, beside the other ones of the record `name`."""
     rows = recorded.figures(name)
@@ -106,10 +111,10 @@ def count(config: Config, record: bool) -> int:
     for name, value in used.items():
         out.add_row(name, str(value))
     console.show(out)
-    if record and config.name in LIGHT_BUILDS:
+    if record and record_of(config):
         none = {"median": None}
         report = {"config": config.name, "resources": used, "fmax_mhz": none, "seeds": []}
-        record_lights(report | {"tools": ecp5.versions()})
+        record_build(report | {"tools": ecp5.versions()}, record_of(config))
     elif record:
         console.note("not recorded: a record needs a clock, --seeds 1 or more")
     return console.GOOD
@@ -127,9 +132,8 @@ def main(config: Config, grade: int, seeds: int, count_gates: bool, record: bool
         return count(config, record)
     report = ecp5.run(config, grade, tuple(range(1, seeds + 1)), count_gates, Steps().step)
     console.show(table(report))
-    of = [name for name, builds in BUILDS.items() if config.name in builds]
-    if record and of:
-        record_build(report, of[0])
+    if record and record_of(config):
+        record_build(report, record_of(config))
     elif record:
         recorded.record(
             f"synth-grade{grade}",
