@@ -286,7 +286,9 @@ def _explain(stimulus: Stimulus, comparison: metrics.Comparison) -> None:
     if comparison.first:
         console.note(_where(comparison.first))
         # `locate` knows the stages of these.
-        by_technique = config in TECHNIQUES.values() or config.sums_lights
+        by_technique = config in TECHNIQUES.values() or (
+            config.sums_lights and not (config.has_curves or config.weight_jumps)
+        )
         if comparison.first.expected and stimulus.built == config and by_technique:
             console.note(locate(stimulus.frame, comparison.first.index, config))
 
