@@ -140,12 +140,10 @@ def _front_end(request: RunRequest, folder: Path, steps: Steps) -> Stimulus:
             meshes, front = [], None
         else:
             scene = load_scene(request.scene, request.size, config)
-            for remark in scene.remarks:
-                console.note(remark)
             front = front_end(scene, config, step.done)
             frame, exact, degenerate = front.frame, front.exact, front.degenerate_triangles
             meshes = [(item.name, item.report) for item in scene.objects if item.report]
-            notes = front.notes
+            notes = scene.remarks + front.notes
         config = fitted(config, frame, request.units)
         built = _built(request, frame, config)
         if built.values != config.values and (reasons := pruning.missing(frame, built, config)):
@@ -307,7 +305,7 @@ def _explain(stimulus: Stimulus, comparison: metrics.Comparison) -> None:
         linear = replace(config, name=config.technique, normal_order=1)
         by_technique = (
             config in TECHNIQUES.values()
-            or config.sums_lights
+            or (config.sums_lights and not (config.has_curves or config.weight_jumps))
             or linear == replace(DEFAULT, name="phong")
         )
         if comparison.first.expected and stimulus.built == config and by_technique:

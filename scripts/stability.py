@@ -61,6 +61,8 @@ def scene_errors(cases, results) -> dict[adversarial.Family, float]:
     worst = dict.fromkeys(adversarial.FAMILIES, 0.0)
     for case, result in zip(cases, results, strict=True):
         table, spans = case.frame.materials, case.frame.spans
+        if table.curve is not None:  # no power, and so in no family
+            continue
         material = np.repeat(spans["material"], spans["length"])
         n = C.exponent.real(table.exponent)[material]
         constant = (np.ptp(table.weight, axis=1) == 0)[material]

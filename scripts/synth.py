@@ -81,6 +81,11 @@ def figures(report: dict) -> dict:
 BUILDS = {"lights": LIGHT_BUILDS, "reflectance": CURVE_BUILDS}
 
 
+def record_of(config: Config) -> str:
+    """The record that has a row for the build `config`; "" if none has."""
+    return next((name for name, builds in BUILDS.items() if config.name in builds), "")
+
+
 def record_build(report: dict, name: str) -> None:
     """Record what `report` found of a build, beside the other ones of the record `name`."""
     rows = recorded.figures(name)
@@ -122,11 +127,10 @@ def count(config: Config, record: bool) -> int:
     for name, value in used.items():
         out.add_row(name, str(value))
     console.show(out)
-    of = [name for name, builds in BUILDS.items() if config.name in builds]
-    if record and of:
+    if record and record_of(config):
         none = {"median": None}
         report = {"config": config.name, "resources": used, "fmax_mhz": none, "seeds": []}
-        record_build(report | {"tools": ecp5.versions()}, of[0])
+        record_build(report | {"tools": ecp5.versions()}, record_of(config))
     elif record:
         console.note("not recorded: a record needs a clock, --seeds 1 or more")
     return console.GOOD
@@ -145,9 +149,8 @@ def main(config: Config, grade: int, seeds: int, count_gates: bool, record: bool
         return count(config, record)
     report = ecp5.run(config, grade, tuple(range(1, seeds + 1)), count_gates, Steps().step)
     console.show(table(report))
-    of = [name for name, builds in BUILDS.items() if config.name in builds]
-    if record and of:
-        record_build(report, of[0])
+    if record and record_of(config):
+        record_build(report, record_of(config))
     elif record and more:
         _record_more(report)
     elif record:

@@ -105,11 +105,11 @@ def test_a_good_run(start, scene, tmp_path):
 
     report = json.loads((tmp_path / "out/report.json").read_text())
     assert list(report) == [
-        "schema", "scene", "technique", "size", "pixels", "spans", "illegal_spans", "unsupported",
-        "zero_normals", "cycles",
+        "schema", "scene", "technique", "size", "pixels", "spans", "lights", "cycles_of_lights",
+        "illegal_spans", "unsupported", "zero_normals", "cycles",
         "cycles_per_pixel", "latency_cycles", "stall_cycles", "utilization", "budget", "compare",
         "error", "input_error", "degenerate_triangles", "mesh", "lit_facing_away", "empty",
-        "config", "versions", "wall_s",
+        "undecided", "notes", "config", "versions", "wall_s",
     ]  # fmt: skip
     assert report["scene"] == "small" and report["size"] == [32, 24]
     pixels, cycles = report["pixels"], report["cycles"]

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
+import shutil
 
 import numpy as np
 import pytest
@@ -28,7 +29,11 @@ from phong75.model.reflectance import (
 from phong75.model.registers import address_bits, writes
 from phong75.model.scene_to_frame import front_end
 from phong75.model.twin.reflectance.reflectance_table import fold, lookup, octave, offset_bits
+from phong75.sim import design
+from phong75.sim.build import Bench
 from tests.configuration_tests import plain, reflectant
+from tests.modules.benches import module_bench
+from tests.test_modules import run
 
 CURVE = Config(name="curve", power_method="curve")
 STEPS = Polyline((0.3, 0.3, 0.7, 0.7, 0.95, 0.95), (0.0, 0.3, 0.3, 0.6, 0.6, 1.0))
@@ -291,3 +296,25 @@ def test_weights_with_jumps_are_exact_at_their_points():
     points, jumps, smeared = weight_points(weight, C)
     assert 255 * weight_distance(weight, points, jumps, C) < 0.005 and not smeared
     assert jumps[0].tolist() == [0, int(np.ceil(place * C.cosine.one)), round(0.8 * 65536)]
+
+
+# -- broken designs --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("module", "old", "new", "bench", "stage"),
+    [
+        ("reflectance_table", "~place_p4[HALF_BITS-1]", "1'b0", "reflectance_table", "lookup"),
+        ("jumps", "operand >= threshold", "operand > threshold", "stepped_weight", "level"),
+        ("stepped_line", "~level_p4[LEVEL_BITS-1]", "1'b1", "stepped_weight", "result"),
+    ],
+)
+def test_a_broken_design_is_located(tmp_path, module, old, new, bench, stage):
+    rtl = tmp_path / "rtl"
+    shutil.copytree(design.RTL, rtl)
+    file = design.module_file(module, rtl)
+    assert file.read_text().count(old) == 1
+    file.write_text(file.read_text().replace(old, new))
+    made = module_bench(bench)
+    with pytest.raises(pytest.fail.Exception, match=f"stage {bench}.{stage}"):
+        run(made, tmp_path / "run", Bench(made.top, made.config, made.sources, rtl=rtl))

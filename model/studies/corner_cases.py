@@ -15,15 +15,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from phong75.model.analysis import reference
+from phong75.model.analysis import reference, undecided
 from phong75.model.arrays import ArrayLike, Flags, Ints, Reals, Spans
 from phong75.model.config import DEFAULT as C
+from phong75.model.config import MAX_JUMPS
 from phong75.model.frame import (
     SPAN_DTYPE,
     Frame,
     FurtherLight,
     MaterialTable,
     half_vector_codes,
+    with_lights,
 )
 from phong75.model.front import visibility
 from phong75.model.front.camera import Camera, light_frame
@@ -31,6 +33,14 @@ from phong75.model.front.mesh import Mesh, normalize
 from phong75.model.front.scene import Material, Scene, SceneObject
 from phong75.model.front.scene_to_spans import encode
 from phong75.model.front.visibility import GRID
+from phong75.model.reflectance import (
+    Curve,
+    Polyline,
+    Power,
+    curve_words,
+    power_words,
+    weight_points,
+)
 from phong75.model.scene_to_frame import front_end
 from phong75.model.twin import Pixels, render
 
@@ -721,10 +731,113 @@ def _same_without(frame: Frame, got: Pixels) -> list[str]:
     return [f"{wrong} pixels show lights that do not reach them"] if wrong else []
 
 
+# -- curves of cos(s) by table, and jumps ----------------------------------------------------------
+
+#: A toon curve and a W of four steps each, as (cos, value at and above it).
+TOON = ((0.1, 0.25), (0.52, 0.5), (0.83, 0.75), (0.98, 1.0))
+STEPPED_W = ((0.05, 0.2), (0.3, 0.4), (0.6, 0.6), (0.9, 0.8))
+
+
+def _polyline(steps: tuple[tuple[float, float], ...]) -> Polyline:
+    """Steps from 0, each up to a value at a place."""
+    places, levels = zip(*steps, strict=True)
+    values = [v for pair in zip((0.0, *levels), levels, strict=False) for v in pair]
+    return Polyline(tuple(np.repeat(places, 2).tolist()), tuple(values))
+
+
+def _curves() -> MaterialTable:
+    """Black materials of curves: n = 0, 1/2, 1/16; toon steps; toon steps under a stepped W; and
+    lines of the extremes of a word, of random height."""
+    table = MaterialTable.empty(C)
+    curves: list[Curve] = [
+        Power(0.0),
+        Power(0.5),
+        Power(0.0625),
+        _polyline(TOON),
+        _polyline(TOON),
+        Power(128.0),
+    ]
+    found = [curve_words(curve, C) for curve in curves]
+    none = np.zeros((C.materials, MAX_JUMPS, 3), np.int64)
+    table.curve = power_words(table.exponent, C)
+    table.curve_jumps, table.weight_jumps = none, none.copy()
+    for index, (words, jumps, _) in enumerate(found):
+        table.curve[index], table.curve_jumps[index] = words, jumps
+        table.weight[index] = C.coefficient.quantize(0.25)
+    table.weight[3] = C.coefficient.one
+    points, steps, _ = weight_points(_polyline(STEPPED_W), C)
+    table.weight[4], table.weight_jumps[4] = points, steps
+    rng, most = np.random.default_rng(11), C.coefficient.max
+    lines = table.curve[5]
+    lines[:, 0] = rng.choice([0, 1, C.coefficient.one, most], len(lines))
+    lines[:, 1] = rng.choice([0, 1], len(lines)) * np.where(lines[:, 0] > most // 2, -1, 1)
+    lines[::9] = (0, 0)
+    lines[3::9] = (most, 0)
+    for jumps in (table.curve_jumps, table.weight_jumps):  # one build for all: below 0 is nothing
+        jumps[jumps[..., 2] == 0] = (0, 0, 1)
+    return table
+
+
+def only_levels(levels: ArrayLike) -> Callable[[Frame, Pixels], list[str]]:
+    """A check that every pixel has one of `levels` (intensities) or is black, and that the
+    highest level is there."""
+    codes = np.floor(255 * np.asarray(levels) + 0.5).astype(int)
+
+    def check(frame: Frame, got: Pixels) -> list[str]:
+        seen = set(np.unique(got.rgb).tolist())
+        other, top = sorted(seen - {0, *codes.tolist()}), int(codes.max())
+        lines = [f"codes {other} are between the steps"] if other else []
+        return lines + ([] if top in seen else [f"no pixel has the code {top}"])
+
+    return check
+
+
+def _reflectance() -> Iterator[CornerCase]:
+    rng = np.random.default_rng(2002)
+    table = _curves()
+    first, last = _directions(rng, 96), _directions(rng, 96)
+    yield CornerCase(
+        "n = 0 by table",
+        "n = 0, cos(s) from 1 to below 0",
+        "W on every lit pixel: 0⁰ is 1",
+        _frame(_between(first, last, 33, 0), table), only_levels([0.25]),
+    )  # fmt: skip
+    # In the plane x = 0 of the eye behind the light, cos(s) crosses 0 where N is 45 degrees off.
+    tilt = np.pi / 4 + rng.uniform(-1e-3, 1e-3, 96)
+    grazing = np.stack([0 * tilt, np.sin(tilt), np.cos(tilt)], axis=1)
+    off = 1e-3 * rng.normal(size=(96, 3))
+    yield CornerCase(
+        "n = 1/2 and 1/16 where cos(s) is 0",
+        "cos(s)ⁿ of unbounded slope, cos(s) from −0.003 to 0.003",
+        "within the bound, which is that of the steepest line",
+        _frame(_between(grazing, normalize(grazing + off), 33, 1), table, angle=0.0),
+    )  # fmt: skip
+    yield CornerCase(
+        "toon steps",
+        "four jumps of a curve that is flat between them, W = 1",
+        "the five levels, and no other code",
+        _frame(_between(first, last, 65, 3), table), only_levels([v for _, v in TOON]),
+    )  # fmt: skip
+    products = [a * b for _, a in TOON for _, b in STEPPED_W]
+    yield CornerCase(
+        "toon steps under a W of steps",
+        "four jumps of the curve times four jumps of W(i)",
+        "products of two levels, and no other code",
+        _frame(_between(first, last, 65, 4), table), only_levels(products),
+    )  # fmt: skip
+    yield CornerCase(
+        "lines of extreme words",
+        "lines of 0, 1 and 1.99998, side by side",
+        "saturation below 1, jumps at the end of a line",
+        _frame(_between(first, last, 65, 5), table),
+    )  # fmt: skip
+
+
 def cases() -> list[CornerCase]:
     """All cases, in the order of the table. Every call returns the same integers."""
     makers = (
         _ends_apart, _lengths, _spans, _light, _terminator, _coefficients, _triangles, _lights,
+        _reflectance,
     )  # fmt: skip
     return [case for maker in makers for case in maker()]
 
@@ -839,8 +952,8 @@ def errors(frame: Frame, rgb: Ints, progress: Callable[[float], None] | None = N
     """The largest error of the three channels of each pixel, LSB, float64[n].
 
     rgb: codes int[n, 3] of the pixels of `frame`, in the order of the stream. They are compared
-    with `reference.render` in blocks, so that a frame of any size fits the memory. progress: called
-    with the part done, 0 to 1.
+    with `reference.render`, at a jump with the nearer side, in blocks, so that a frame of any size
+    fits the memory. progress: called with the part done, 0 to 1.
     """
     ends = np.cumsum(np.maximum(frame.spans["length"], 1))
     total = int(ends[-1]) if len(ends) else 0
@@ -848,8 +961,11 @@ def errors(frame: Frame, rgb: Ints, progress: Callable[[float], None] | None = N
     parts, done = [], 0
     for rows in np.split(np.arange(len(frame.spans)), cuts):
         if len(rows):
-            exact = reference.render(frame.take(rows))
-            parts.append(np.abs(rgb[done : done + len(exact)] - exact).max(axis=1))
+            part = frame.take(rows)
+            exact = reference.render(part)
+            codes = rgb[done : done + len(exact)]
+            exact = undecided.nearest(codes, exact, part, with_lights(C, frame)).ideal
+            parts.append(np.abs(codes - exact).max(axis=1))
             done += len(exact)
             if progress:
                 progress(done / total)

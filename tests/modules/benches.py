@@ -37,8 +37,7 @@ BUILDS = CONFIGS | _LIGHTS | _REFLECTANCE
 _VARIANTS = (
     "inverse_sqrt_iterated@fast_inverse_1", "specular_power_squaring@squaring_14",
     "quadratic_normalizer@quadratic_spans_14", "light_highlight@lights_8", "light_terms@lights_8",
-    "context_interpolator@lights_8", "reflectance_map@jumps", "reflectance_table@jumps",
-    "reflectance_table@jump", "stepped_weight@jumps",
+    "context_interpolator@lights_8", "reflectance_table@jump",
 )  # fmt: skip
 
 #: The benches of the whole design's control and pipeline, and their top levels.
@@ -72,9 +71,10 @@ class ModuleBench:
 
     def environment(self, vectors: Path, seed: int) -> dict[str, str]:
         """The environment variables of the cocotb tests; vectors: folder for vector files."""
-        module, _, config = self.name.partition("@")
+        module = self.name.partition("@")[0]
+        config = self.config.name if self.config.name in BUILDS else "default"
         return {
-            environment.MODULE: module, environment.CONFIG: config or "default",
+            environment.MODULE: module, environment.CONFIG: config,
             environment.VECTORS: str(vectors), environment.SEED: str(seed),
         }  # fmt: skip
 
@@ -93,8 +93,9 @@ def module_bench(name: str) -> ModuleBench:
         top, text = bench_source(module)
         folder = module_file(module).parent.name
         tests = folder if folder in ("methods", "lights", "reflectance") else "datapath"
+        usual = "jumps" if folder == "reflectance" else "default"
         return ModuleBench(
-            name, top, f"tests.modules.{tests}", {f"{top}.v": text}, BUILDS[config or "default"]
+            name, top, f"tests.modules.{tests}", {f"{top}.v": text}, BUILDS[config or usual]
         )
     if name in _TECHNIQUES:
         tests = "tests.modules.phong_pipeline"
