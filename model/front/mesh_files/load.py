@@ -100,6 +100,8 @@ def load_mesh_file(path: str | Path, crease: float | None = None) -> LoadedMesh:
     if suffix == ".stl":  # its normals are those of the faces
         for part in contents.parts:
             part.normals = None
+    if suffix == ".obj":
+        _check_obj(path, prepared, contents)
     soup = _place(path, contents)
     report = MeshReport(
         path.name,
@@ -149,6 +151,21 @@ def load_mesh_file(path: str | Path, crease: float | None = None) -> LoadedMesh:
     index, materials = _materials(files_materials, material, colours, suffix, report)
     mesh = Mesh(vertices, faces, mesh_normals, report.degenerate_triangles)
     return LoadedMesh(mesh, index, materials, two_sided, report)
+
+
+def _check_obj(path: Path, prepared: Prepared, contents: FileContents) -> None:
+    """Raise InputError if Assimp dropped something of an OBJ file because of a wrong index.
+
+    Assimp leaves out a normal that is not there, and makes a point of a face with such a texture
+    vertex. The search for the place takes long; only a file with traces of this is searched.
+    """
+    lost = any(
+        part.normals is None or not np.any(part.normals, axis=1).all() for part in contents.parts
+    )
+    if (contents.other and not prepared.lines) or (prepared.normals and lost):
+        place = diagnose_obj(path)
+        if place:
+            raise InputError(f"{path}: {place}")
 
 
 def _named(text: str, others: list[str]) -> bool:
@@ -337,7 +354,7 @@ def _file_materials(
             said = said_by_name.get(name, said | {"?mat.name": name})
         known = prepared.materials is None or index < prepared.materials
         defined = known and name != "DefaultMaterial"
-        result.append(file_material(said, defined, suffix != ".ply"))
+        result.append(file_material(said, defined, suffix in (".glb", ".gltf")))
     return result, np.array(groups or [-1], np.int64)
 
 
