@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import struct
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -215,6 +216,7 @@ def complaint_about(folder, name, content):
     """What goes wrong with a file of `content`: "" if it is refused in one line or drawn."""
     path = folder / name
     path.write_bytes(content)
+    warnings.simplefilter("error")
     try:
         scene = load_scene(path, (64, 48))
     except InputError as error:
