@@ -36,6 +36,8 @@ variables_mutate := FILES KIND SAMPLE AGAIN RECORD
 variables_coverage := RECORD
 variables_icarus := RECORD
 variables_prune-random := SCENES RECORD
+variables_mesh-fuzz := FILES FOLDER RECORD
+variables_mesh-large := TRIANGLES RECORD
 variables_test := RECORD
 variables_test-all := RECORD
 
@@ -145,7 +147,8 @@ configs: setup
 
 # -- for developers --------------------------------------------------------------------------------
 
-.PHONY: lint check test test-all test-report mutate coverage icarus prune-random docs clean
+.PHONY: lint check test test-all test-report mutate coverage icarus prune-random mesh-fuzz \
+  mesh-large docs clean
 
 lint: setup
 	@$(PYTHON) -m phong75.scripts.lint
@@ -176,6 +179,13 @@ icarus: setup
 
 prune-random: setup
 	@$(PYTHON) -m tests.campaigns.random_scenes $(call option,--scenes,SCENES) $(record)
+
+mesh-fuzz: setup
+	@$(PYTHON) -m tests.campaigns.mesh_fuzz $(call option,--files,FILES) \
+	  $(call option,--folder,FOLDER) $(record)
+
+mesh-large: setup
+	@$(PYTHON) -m tests.campaigns.large_mesh $(call option,--triangles,TRIANGLES) $(record)
 
 docs: docs-setup
 	@$(PYTHON) -m phong75.scripts.docs
@@ -223,6 +233,8 @@ help:
 	@echo '                     FILES="a b" KIND=constant|operator SAMPLE=20 AGAIN=1'
 	@echo '  make coverage      coverage of rtl/; make icarus: the module tests with unknown values'
 	@echo '  make prune-random  SCENES=200: random scenes on the builds pruned to them'
+	@echo '  make mesh-fuzz     FILES=10000 FOLDER=DIR: mutated mesh files; make mesh-large:'
+	@echo '                     TRIANGLES=10000000 from file to spans'
 	@echo '  make docs          the documentation, build/docs/'
 	@echo '  make setup         install what make run and make test use; make clean: remove build/'
 	@echo 'RECORD=1 writes the figures of a long run into results/, unless a better run is there.'

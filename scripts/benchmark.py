@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Clocks a second of the simulation and frames a second of the model: `phong75 bench`.
+"""Clocks a second of the simulation, frames a second of the model and triangles a second of mesh
+files: `phong75 bench`.
 
 The two ways to simulate run in turns, several times, on the same frame: under cocotb as `phong75
 run` does it, through files, and in a bare Verilator C++ loop that feeds the pipeline from memory.
@@ -24,6 +25,7 @@ from rich.table import Table
 from phong75.model.config import DEFAULT as CONFIG
 from phong75.model.config import Config
 from phong75.model.frame import Frame
+from phong75.model.front.mesh_files.load import load_mesh_file
 from phong75.model.front.scene import load_scene
 from phong75.model.registers import writes
 from phong75.model.scene_to_frame import front_end
@@ -38,6 +40,7 @@ from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 ROUNDS = 5
 SCENE, SIZE = "teapot", (640, 480)
 COPIES = 8  # frames a measurement, so that it lasts long enough
+MESH_STEPS, MESH_ROUNDS = (1024, 512), 3  # a torus of 1024 x 512 quads
 
 
 def repeated(frame: Frame, copies: int) -> Frame:
@@ -96,6 +99,58 @@ def model_seconds(count: int) -> float:
     return best
 
 
+def write_torus(path: Path, segments: int, sides: int) -> int:
+    """Write a torus of 2 `segments` `sides` triangles as OBJ or binary STL, without normals;
+    returns the number of triangles. It is written in pieces, because it may be large."""
+    around = np.arange(segments + 1) * 2 * np.pi / segments
+    about = np.arange(sides + 1) * 2 * np.pi / sides
+    around[-1], about[-1] = 0.0, 0.0  # the same points at the seams, to the bit
+    radius, height = 1 + 0.4 * np.cos(about), 0.4 * np.sin(about)
+
+    def ring(index: int) -> np.ndarray:
+        x, y = np.cos(around[index]) * radius, np.sin(around[index]) * radius
+        return np.column_stack([x, y, height]).astype("<f4")
+
+    with open(path, "wb") as file:
+        if path.suffix == ".stl":
+            file.write(b" " * 80 + np.uint32(2 * segments * sides).astype("<u4").tobytes())
+            kind = [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("rest", "<u2")]
+            for k in range(segments):
+                a, b = ring(k), ring(k + 1)
+                records = np.zeros(2 * sides, kind)
+                records["corners"][::2] = np.stack([a[:-1], b[:-1], b[1:]], axis=1)
+                records["corners"][1::2] = np.stack([a[:-1], b[1:], a[1:]], axis=1)
+                file.write(records.tobytes())
+            return 2 * segments * sides
+        for k in range(segments):
+            np.savetxt(file, ring(k)[:-1], "v %.6f %.6f %.6f")
+        index = np.arange(sides)
+        for k in range(segments):
+            a, b = k * sides + 1, (k + 1) % segments * sides + 1
+            quads = [a + index, b + index, b + (index + 1) % sides, a + (index + 1) % sides]
+            faces = np.stack([quads[i] for i in (0, 1, 2, 0, 2, 3)], axis=1).reshape(-1, 3)
+            np.savetxt(file, faces, "f %d %d %d")
+    return 2 * segments * sides
+
+
+def mesh_rates() -> dict[str, float]:
+    """Triangles a second from a mesh file to triangles with normals, the best of several rounds,
+    by the suffix of the file."""
+    rates = {}
+    with tempfile.TemporaryDirectory(dir=BUILD) as name:
+        for suffix in ("obj", "stl"):
+            path = Path(name) / f"torus.{suffix}"
+            count = write_torus(path, *MESH_STEPS)
+            best = float("inf")
+            for k in range(MESH_ROUNDS):
+                console.phase(f"{suffix}, {count} triangles, round {k + 1} of {MESH_ROUNDS}")
+                start = time.perf_counter()
+                load_mesh_file(path)
+                best = min(best, time.perf_counter() - start)
+            rates[suffix] = count / best
+    return rates
+
+
 def main(record: bool) -> int:
     """Measure and print; the numbers also go to build/bench.json. Returns the exit code.
 
@@ -116,6 +171,7 @@ def main(record: bool) -> int:
     pixels = SIZE[0] * SIZE[1]
     console.phase("the model alone")
     seconds = model_seconds(pixels)
+    meshes = mesh_rates()
     best = {name: max(values) for name, values in rates.items()}
     found = {
         "simulation": {
@@ -125,6 +181,7 @@ def main(record: bool) -> int:
             "ratio": round(best["cocotb"] / best["bare"], 3),
         },
         "model": {"pixels": pixels, "seconds": round(seconds, 4), "fps": round(1 / seconds, 1)},
+        "mesh_triangles_per_s": {suffix: round(rate) for suffix, rate in meshes.items()},
         "cpus": os.cpu_count(),
     }  # fmt: skip
     (BUILD / "bench.json").write_text(json.dumps(found, indent=2) + "\n")
@@ -135,12 +192,15 @@ def main(record: bool) -> int:
     table.add_row("under cocotb", f"{best['cocotb'] / 1e6:.2f} Mclock/s")
     table.add_row("ratio (1/3 at least)", f"{best['cocotb'] / best['bare']:.2f}")
     table.add_row(f"model, {pixels} lit pixels, one core", f"{1 / seconds:.1f} frames/s")
+    for suffix, rate in meshes.items():
+        table.add_row(f"reading {suffix.upper()}", f"{rate / 1e3:.0f} thousand triangles/s")
     console.show(table)
     if record:
         recorded.record(
-            "bench", "make bench", ("verilator", "cocotb", "numpy"),
+            "bench", "make bench", ("verilator", "cocotb", "numpy", "cmeel-assimp"),
             {"cocotb_to_bare": found["simulation"]["ratio"],
-             "model_frames_per_s": found["model"]["fps"]},
+             "model_frames_per_s": found["model"]["fps"],
+             "mesh_triangles_per_s": found["mesh_triangles_per_s"]},
             {"rounds": ROUNDS},
         )  # fmt: skip
     return console.GOOD

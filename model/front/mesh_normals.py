@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -48,23 +48,42 @@ def face_normals(vertices: Reals, faces: Ints) -> Reals:
 def normals_and_areas(vertices: Reals, faces: Ints) -> tuple[Reals, Reals]:
     """Unit normals of the faces, float64[F, 3], and their areas, float64[F]; zero for degenerate
     faces. Arguments as for `face_normals`."""
-    normal, area = np.empty((len(faces), 3)), np.empty(len(faces))
-    for block, cross, longest, _ in _blocks(vertices, faces):
-        length = np.sqrt(cross[0] ** 2 + cross[1] ** 2 + cross[2] ** 2)
-        good = length > DEGENERATE_AREA
-        normal[block] = np.where(good, cross / np.where(good, length, 1.0), 0.0).T
-        area[block] = np.where(good, length * longest**2 / 2.0, 0.0)
-    return normal, area
+    measured = measure(vertices, faces)
+    return measured.normal, measured.area
 
 
-def _blocks(vertices: Reals, faces: Ints) -> Iterator[tuple[slice, Reals, Reals, Reals]]:
-    """The geometry of some thousand faces at a time, which fits the processor's cache.
+@dataclass
+class Measures:
+    """Normals, areas and angles of F triangles.
 
-    Yields (block, cross, longest, dots). block: which faces. longest: float64[n], the largest
-    component of the sides of each. cross: float64[3, n], the cross product of two sides divided by
-    `longest`. dots: float64[3, n], at each corner the dot product of both sides there, divided by
-    the square of `longest`.
+    normal: float64[F, 3], unit length; zero for degenerate faces. area: float64[F], zero for
+    degenerate faces. angle: float64[F, 3], at the corners, radians.
     """
+
+    normal: Reals
+    area: Reals
+    angle: Reals
+
+    def take(self, which: Flags) -> Measures:
+        """Those of the faces `which`."""
+        return Measures(self.normal[which], self.area[which], self.angle[which])
+
+    def turned(self, which: Flags) -> Measures:
+        """Those of the same faces, `which` of them wound the other way."""
+        return Measures(
+            np.where(which[:, None], -self.normal, self.normal),
+            self.area,
+            np.where(which[:, None], self.angle[:, ::-1], self.angle),
+        )
+
+
+def measure(vertices: Reals, faces: Ints) -> Measures:
+    """The measures of `faces`. Arguments as for `face_normals`.
+
+    Some thousand faces at a time fit the processor's cache. Sides are divided by their largest
+    component, so that squares neither overflow nor underflow.
+    """
+    result = Measures(np.empty((len(faces), 3)), np.empty(len(faces)), np.empty((len(faces), 3)))
     for begin in range(0, len(faces), BLOCK):
         block = slice(begin, begin + BLOCK)
         corners = np.ascontiguousarray(vertices[faces[block]].transpose(1, 2, 0))
@@ -74,7 +93,12 @@ def _blocks(vertices: Reals, faces: Ints) -> Iterator[tuple[slice, Reals, Reals,
         cross = np.stack([z0 * y2 - y0 * z2, x0 * z2 - z0 * x2, y0 * x2 - x0 * y2])
         dots = np.stack([x0 * x2 + y0 * y2 + z0 * z2, x1 * x0 + y1 * y0 + z1 * z0,
                          x2 * x1 + y2 * y1 + z2 * z1])  # fmt: skip
-        yield block, cross, longest, -dots
+        length = np.sqrt(cross[0] ** 2 + cross[1] ** 2 + cross[2] ** 2)
+        good = length > DEGENERATE_AREA
+        result.normal[block] = np.where(good, cross / np.where(good, length, 1.0), 0.0).T
+        result.area[block] = np.where(good, length * longest**2 / 2.0, 0.0)
+        result.angle[block] = np.arctan2(length, -dots).T
+    return result
 
 
 def corner_normals(
@@ -99,19 +123,20 @@ def corner_normals(
     """
     label, first = weld(vertices)
     vertices, faces = vertices[first], label[faces]
-    flat, area = normals_and_areas(vertices, faces)
-    return corner_normals_of(vertices, faces, flat, area, Edges.of(faces), crease, smoothing)
+    return corner_normals_of(
+        vertices, faces, measure(vertices, faces), Edges.of(faces), crease, smoothing
+    )
 
 
 def corner_normals_of(
-    vertices: Reals, faces: Ints, flat: Reals, area: Reals, edges: Edges, crease: float,
+    vertices: Reals, faces: Ints, measures: Measures, edges: Edges, crease: float,
     smoothing: Ints | None = None,
 ) -> Reals:  # fmt: skip
     """As `corner_normals`, of what is known already.
 
-    vertices: float64[V, 3], no two of them equal. flat, area: of the faces, as
-    `normals_and_areas` gives them. edges: of the faces.
+    vertices: float64[V, 3], no two of them equal. measures, edges: of the faces.
     """
+    flat = measures.normal
     first, second = _links(vertices, faces, flat, edges)
     face_a, face_b = first // 3, second // 3
     cosine = np.sum(flat[face_a] * flat[face_b], axis=1)
@@ -120,11 +145,10 @@ def corner_normals_of(
         a, b = smoothing[face_a], smoothing[face_b]
         smooth = np.where((a >= 0) & (b >= 0), (a == b) & (a > 0), smooth)
     coplanar = smooth & (cosine >= np.cos(FLAT))
-    area = _flat_areas(area, face_a[coplanar], face_b[coplanar])
+    area = _flat_areas(measures.area, face_a[coplanar], face_b[coplanar])
 
     group = _groups(faces, edges, first, second, smooth)
-    angle = _corner_angles(vertices, faces).reshape(-1)
-    mean = _group_means(group, angle, area, flat)
+    mean = _group_means(group, measures.angle.reshape(-1), area, flat)
     return np.where(np.any(mean != 0, axis=-1, keepdims=True), mean, flat[:, None, :])
 
 
@@ -214,14 +238,6 @@ def _flat_areas(area: Reals, a: Ints, b: Ints) -> Reals:
     result = area.copy()
     result[members] = total[region[members]]
     return result
-
-
-def _corner_angles(vertices: Reals, faces: Ints) -> Reals:
-    """Angle of each face at each of its corners, float64[F, 3], radians."""
-    angle = np.empty((len(faces), 3))
-    for block, cross, _, dots in _blocks(vertices, faces):
-        angle[block] = np.arctan2(np.sqrt(np.sum(cross * cross, axis=0)), dots).T
-    return angle
 
 
 def _group_means(group: Ints, angle: Reals, area: Reals, flat: Reals) -> Reals:

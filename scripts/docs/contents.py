@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from phong75.model.config import DEFAULT, TECHNIQUES
+from phong75.model.front import mesh_normals
 from phong75.model.studies.methods import CONFIGS
 from phong75.scripts import recorded
 from phong75.scripts.docs import commands, facts, tables
@@ -175,6 +176,10 @@ FIGURES: dict[str, Callable[[], str]] = {
     "bound.intensity": lambda: facts.above(facts.intensity_bound(), 4),
     "bound.jump": lambda: facts.above(facts.jump()),
     "configurations": lambda: str(len(CONFIGS)),
+    "mesh.memory": facts.mesh_memory,
+    "mesh.time": facts.mesh_time,
+    "mesh.crease": lambda: f"{mesh_normals.DEFAULT_CREASE:g}",
+    "mesh.large": lambda: f"{mesh_normals.LARGE:g}",
     # of the records
     "cases": lambda: str(len(_record("stability")["rows"])),
     "power.n20": lambda: f"{_power_error(20):.2g}",

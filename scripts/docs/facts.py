@@ -23,6 +23,7 @@ from phong75.model.analysis.pruning import prune
 from phong75.model.config import DEFAULT as C
 from phong75.model.config import TECHNIQUES, Config, Format
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
+from phong75.model.front.mesh_files import library
 from phong75.model.front.scene import SHAPES
 from phong75.model.reflectance import Power, curve_distance, curve_words
 from phong75.model.studies import corner_cases
@@ -280,3 +281,13 @@ def features() -> str:
     """The fields of Config that pruning decides on, and what a build lacks without each."""
     rows = ((f"`{row.feature}`", row.saves) for row in prune(_frame(1.0, 10.0))[1])
     return markdown(("field of `Config`", "without it go"), rows, left=2)
+
+
+def mesh_memory() -> str:
+    """The memory that the reader of a mesh file may use, in words."""
+    return f"{library.MEMORY / 2**30:g} GiB and {library.MEMORY_PER_BYTE} times the file"
+
+
+def mesh_time() -> str:
+    """The processor time that the reader of a mesh file may use, in words."""
+    return f"{library.CPU_S} s and {library.CPU_S_PER_BYTE * 1e6:g} s for each MB"

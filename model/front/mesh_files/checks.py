@@ -56,7 +56,7 @@ class Prepared:
     the file and of the buffers that it refers to. notes: what was changed, in words. unused: what
     the file has and Phong75 does not use. materials: how many materials the file defines, or None
     if that is not known; further ones are the library's defaults. smoothing: whether an OBJ file
-    has smoothing groups.
+    has smoothing groups. normals, lines: whether it has normals; points or lines.
     """
 
     size: int
@@ -65,6 +65,8 @@ class Prepared:
     unused: list[str] = field(default_factory=list)
     materials: int | None = None
     smoothing: bool = False
+    normals: bool = False
+    lines: bool = False
 
 
 Data = bytes | mmap.mmap
@@ -97,6 +99,9 @@ _FEW_COORDINATES = re.compile(
     rb"\nv(?:[ \t]++[^\s#]++)?+(?:[ \t]++[^\s#]++)?+[ \t]*+(?=[\r\n#]|\Z)"
 )
 _GROUPS = re.compile(rb"\n(s|usemtl)(?:[ \t]+([^\r\n]*))?(?=[\r\n]|\Z)")
+_TEXTURE_VERTEX = re.compile(rb"\nvt[ \t]")
+_TEXTURE_INDEX = re.compile(rb"\nf[ \t][^\n/]*+/-?\d")
+_LINES = re.compile(rb"\n[lp][ \t]")
 _CURVES = re.compile(rb"\n(?:cstype|curv|curv2|surf|bmat)[ \t]")
 
 
@@ -120,6 +125,12 @@ def _obj(name: str, data: Data, prepared: Prepared) -> None:
             len(short.group().split()) - 1
         ]
         raise InputError(f"{name}: line {line}: vertex {number} has {count}")
+    if not _TEXTURE_VERTEX.search(text) and _TEXTURE_INDEX.search(text):
+        # Assimp makes points of faces whose texture vertices are not there.
+        text = re.sub(rb"(?<=\d)/-?\d+(?=/)", b"/", text)
+        text, changed = re.sub(rb"([ \t]-?\d+)/-?\d+(?=\s)", rb"\1", text), True
+        prepared.notes.append("indices of texture vertices, of which the file has none, left out")
+    prepared.normals, prepared.lines = b"\nvn" in text, bool(_LINES.search(text))
     prepared.smoothing = any(m.group(1) == b"s" for m in _GROUPS.finditer(text))
     if prepared.smoothing:
         text, changed = _GROUPS.sub(_group_marker(), text), True
@@ -183,6 +194,8 @@ def _corner(corner: bytes, counts: dict[bytes, int]) -> str | None:
         except ValueError:
             return f"'{_show(corner)}' is not a corner of a face"
         there = counts[kind]
+        if kind == b"vt" and not there:
+            continue
         if index == 0:
             return f"index out of range: {noun} 0 (the first {noun} of OBJ is 1)"
         if not -there <= index <= there:
@@ -248,10 +261,14 @@ def _stl(name: str, data: Data, prepared: Prepared) -> None:
     count = struct.unpack_from("<I", data, 80)[0] if size >= 84 else 0
     exact = 84 + 50 * count
     if size >= 84 and size == exact:
+        if not count:
+            raise InputError(f"{name}: the mesh has no faces")
         return
     text = _text(name, data)
     start = text[:5].lower() == b"solid" or text[: text.find(b"\n")].lstrip()[:5] == b"solid"
     if start and re.search(rb"\bfacet\b|\bendsolid\b", text[: 1 << 16], re.I):
+        if not re.search(rb"\bvertex\b", text, re.I):
+            raise InputError(f"{name}: the mesh has no faces")
         if text is not data:
             prepared.content = bytes(text)
         # Assimp wants the name of the solid in UTF-8; the name is of no use here.
@@ -286,14 +303,15 @@ def _glb(name: str, data: Data, prepared: Prepared) -> None:
     end = 20 + chunk
     root = _gltf_content(name, data[20:end], prepared)
     binary = data[end + 8 : length] if length > end + 8 else b""
-    if dequantize(name, root, binary):
+    converted = dequantize(name, root, binary)
+    if converted or chunk % 4:  # Assimp wants chunks of whole words, as the format prescribes
         text = json.dumps(root).encode()
         text += b" " * (-len(text) % 4)
         prepared.content = b"".join([
             struct.pack("<4sIII4s", b"glTF", 2, length - chunk + len(text), len(text), b"JSON"),
             text, data[end:length],
         ])  # fmt: skip
-        prepared.notes.append("positions or normals in integers: converted")
+        prepared.notes += ["positions or normals in integers: converted"] if converted else []
 
 
 def _gltf(name: str, data: Data, prepared: Prepared) -> None:

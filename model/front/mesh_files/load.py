@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -32,8 +33,9 @@ from phong75.model.front.mesh_files.materials import (
 from phong75.model.front.mesh_files.report import MeshReport
 from phong75.model.front.mesh_normals import (
     DEFAULT_CREASE,
+    Measures,
     corner_normals_of,
-    normals_and_areas,
+    measure,
 )
 from phong75.model.front.mesh_topology import Edges, bodies, weld
 from phong75.model.front.vectors import apply_matrix, normalize
@@ -67,14 +69,27 @@ class LoadedMesh:
 class _Soup:
     """The triangles of all placed parts: vertices float64[V, 3], faces int64[F, 3], normals
     float64[F, 3, 3] or None (zero vectors where a part has none), colours float64[F, 3] or None
-    (-1 where a part has none), material int64[F], of the file; parts: how many were placed."""
+    (-1 where a part has none), material int64[F], of the file."""
 
     vertices: Reals
     faces: Ints
     normals: Reals | None
     colours: Reals | None
     material: Ints
-    parts: int
+
+
+@dataclass
+class _Surface:
+    """Triangles with an area, and one vertex per point: vertices float64[V, 3], faces
+    int64[F, 3], their measures and edges; normals, colours, material as in `_Soup`."""
+
+    vertices: Reals
+    faces: Ints
+    measures: Measures
+    edges: Edges
+    normals: Reals | None
+    colours: Reals | None
+    material: Ints
 
 
 def load_mesh(path: str | Path, crease: float | None = None) -> Mesh:
@@ -82,6 +97,7 @@ def load_mesh(path: str | Path, crease: float | None = None) -> Mesh:
     return load_mesh_file(path, crease).mesh
 
 
+@np.errstate(all="ignore")  # a file may hold any number; what comes of it is checked
 def load_mesh_file(path: str | Path, crease: float | None = None) -> LoadedMesh:
     """Read a mesh file; all parts of the file become one mesh.
 
@@ -91,11 +107,11 @@ def load_mesh_file(path: str | Path, crease: float | None = None) -> LoadedMesh:
     InputError that names the file.
     """
     path = Path(path)
-    if path.suffix.lower() not in MESH_SUFFIXES:
+    suffix = path.suffix.lower()
+    if suffix not in MESH_SUFFIXES:
         raise InputError(f"{path}: not a mesh file ({', '.join(TESTED_SUFFIXES)})")
     if not path.is_file():
         raise InputError(f"{path}: no such file")
-    suffix = path.suffix.lower()
     if suffix == notes.OBJECT_SUFFIX:  # the library cuts its polygons, as it cuts those of OBJ
         content = notes.as_obj(notes.read_object(path))
         prepared = Prepared(len(content), content)
@@ -106,11 +122,29 @@ def load_mesh_file(path: str | Path, crease: float | None = None) -> LoadedMesh:
     if suffix == ".stl":  # its normals are those of the faces
         for part in contents.parts:
             part.normals = None
-    soup = _place(path, contents)
+    if suffix == ".obj":
+        _check_obj(path, prepared, contents)
+    report = _report(path, prepared, contents)
+    surface = _surface(path, _place(path, contents), report)
+    open_mixed, twisted = _wind(surface, report)
+    files_materials, groups = _file_materials(contents, prepared, suffix)
+    smoothing = groups[surface.material] if prepared.smoothing and crease is None else None
+    normals = _normals(surface, crease, smoothing, report)
+    two_sided = _two_sided(files_materials, surface.material, open_mixed, twisted, report)
+    index, materials = _materials(
+        files_materials, surface.material, surface.colours, suffix, report
+    )
+    mesh = Mesh(surface.vertices, surface.faces, normals, report.degenerate_triangles)
+    return LoadedMesh(mesh, index, materials, two_sided, report)
+
+
+def _report(path: Path, prepared: Prepared, contents: FileContents) -> MeshReport:
+    """What can be said of a file before its triangles are looked at."""
+    suffix = path.suffix.lower()
     report = MeshReport(
         path.name,
         0,
-        soup.parts,
+        len(contents.nodes),
         up=UP_AXES.get(suffix, "y (guess)"),
         unit="metre" if suffix in (".glb", ".gltf") else "none given",
         unused=prepared.unused + [u for u in contents.unused if not _named(u, prepared.unused)],
@@ -118,43 +152,51 @@ def load_mesh_file(path: str | Path, crease: float | None = None) -> LoadedMesh:
     )
     if contents.other:
         report.unused.append(f"{contents.other} points and lines")
-    report.notes += [f"{Path(name).name} is not there" for name in contents.missing
-                     if Path(name).suffix.lower() == ".mtl"]  # fmt: skip
-    if suffix != ".obj":
-        report.unused_vertices = _unused_vertices(contents)
-    else:
-        report.unused_vertices = None
+    missing = [Path(name) for name in contents.missing]
+    report.notes += [f"{p.name} is not there" for p in missing if p.suffix.lower() == ".mtl"]
+    # Assimp writes a vertex of OBJ once for each corner, so that unused ones are gone.
+    report.unused_vertices = None if suffix == ".obj" else _unused_vertices(contents)
+    return report
 
+
+def _surface(path: Path, soup: _Soup, report: MeshReport) -> _Surface:
+    """The triangles of `soup` that have an area, measured. Raises InputError if there are none."""
     vertices, faces = _weld(soup)
-    flat, area = normals_and_areas(vertices, faces)
-    good = area > 0
-    if not good.any():
+    with ThreadPoolExecutor(1) as other_core:
+        later = other_core.submit(Edges.of, faces)
+        measures = measure(vertices, faces)
+        edges = later.result()
+    good = measures.area > 0
+    report.triangles = int(np.count_nonzero(good))
+    report.degenerate_triangles = len(faces) - report.triangles
+    if not report.triangles:
         raise InputError(f"{path}: all {len(faces)} triangles are degenerate (no area)")
-    normals, colours, material = soup.normals, soup.colours, soup.material
-    if not good.all():
-        faces, flat, area, material = faces[good], flat[good], area[good], material[good]
-        normals = None if normals is None else normals[good]
-        colours = None if colours is None else colours[good]
-    report.degenerate_triangles = int(np.count_nonzero(~good))
-    report.triangles = len(faces)
+    if not report.degenerate_triangles:
+        return _Surface(vertices, faces, measures, edges, soup.normals, soup.colours, soup.material)
+    return _Surface(
+        vertices,
+        faces[good],
+        measures.take(good),
+        Edges.of(faces[good]),
+        None if soup.normals is None else soup.normals[good],
+        None if soup.colours is None else soup.colours[good],
+        soup.material[good],
+    )
 
-    edges = Edges.of(faces)
-    turned, open_mixed, twisted = _winding(vertices, faces, edges, flat, area, normals, report)
-    if turned.any():
-        faces = np.where(turned[:, None], faces[:, ::-1], faces)
-        flat = np.where(turned[:, None], -flat, flat)
-        normals = (
-            None if normals is None else np.where(turned[:, None, None], normals[:, ::-1], normals)
-        )
-        edges = Edges.of(faces)
 
-    files_materials, groups = _file_materials(contents, prepared, suffix)
-    smoothing = groups[material] if prepared.smoothing and crease is None else None
-    mesh_normals = _normals(vertices, faces, flat, area, edges, normals, crease, smoothing, report)
-    two_sided = _two_sided(files_materials, material, open_mixed, twisted, report)
-    index, materials = _materials(files_materials, material, colours, suffix, report)
-    mesh = Mesh(vertices, faces, mesh_normals, report.degenerate_triangles)
-    return LoadedMesh(mesh, index, materials, two_sided, report)
+def _check_obj(path: Path, prepared: Prepared, contents: FileContents) -> None:
+    """Raise InputError if Assimp dropped something of an OBJ file because of a wrong index.
+
+    Assimp leaves out a normal that is not there, and makes a point of a face with such a texture
+    vertex. The search for the place takes long; only a file with traces of this is searched.
+    """
+    lost = any(
+        part.normals is None or not np.any(part.normals, axis=1).all() for part in contents.parts
+    )
+    if (contents.other and not prepared.lines) or (prepared.normals and lost):
+        place = diagnose_obj(path)
+        if place:
+            raise InputError(f"{path}: {place}")
 
 
 def _named(text: str, others: list[str]) -> bool:
@@ -205,6 +247,7 @@ def _place(path: Path, contents: FileContents) -> _Soup:
             if not np.isfinite(matrix).all():
                 raise InputError(f"{path}: the matrix of a node is not finite")
             vertices = apply_matrix(linear, vertices) + matrix[:3, 3]
+            _check_vertices(path, vertices, faces)
         if mirrored:
             faces = faces[:, ::-1]
         all_vertices.append(vertices)
@@ -214,7 +257,7 @@ def _place(path: Path, contents: FileContents) -> _Soup:
             if part.normals is None:
                 all_normals.append(np.zeros((len(faces), 3, 3)))
             else:
-                normals = part.normals.astype(np.float64)
+                normals = np.where(np.isfinite(part.normals), part.normals, 0.0).astype(np.float64)
                 if moved:  # the cofactors are the inverse transpose times the determinant
                     rows = linear[[1, 2, 0]], linear[[2, 0, 1]]
                     cofactors = np.cross(*rows) * (-1.0 if mirrored else 1.0)
@@ -232,7 +275,6 @@ def _place(path: Path, contents: FileContents) -> _Soup:
         _joined(all_normals) if with_normals else None,
         _joined(all_colours) if with_colours else None,
         _joined(all_materials),
-        len(contents.nodes),
     )
 
 
@@ -261,21 +303,22 @@ def _weld(soup: _Soup) -> tuple[Reals, Ints]:
     return vertices[first], label[faces]
 
 
-def _winding(
-    vertices: Reals, faces: Ints, edges: Edges, flat: Reals, area: Reals, normals: Reals | None,
-    report: MeshReport,
-) -> tuple[Flags, Flags, Flags]:  # fmt: skip
-    """Which faces to turn round, which are of open bodies whose faces disagreed, and which are of
-    bodies without two sides: bool[F] each."""
+def _wind(surface: _Surface, report: MeshReport) -> tuple[Flags, Flags]:
+    """Turn the faces of `surface` that are wound the wrong way.
+
+    Returns which faces are of open bodies whose faces disagreed, and which are of bodies without
+    two sides: bool[F] each.
+    """
+    vertices, faces, edges = surface.vertices, surface.faces, surface.edges
     parts = bodies(faces, edges)
     body, turned = parts.body, parts.turned
     count = len(faces)
     sign = np.where(turned, -1.0, 1.0)
     decided = np.zeros(count, bool)  # bodies whose normals tell which side is outside
     reverse: Flags = np.zeros(count, bool)
-    if normals is not None:
-        agreement = area * sign * np.sum(flat[:, None, :] * normals, axis=(1, 2))
-        agreement = np.where(np.isfinite(agreement), agreement, 0.0)
+    if surface.normals is not None:
+        flat = surface.measures.normal[:, None, :]
+        agreement = surface.measures.area * sign * np.sum(flat * surface.normals, axis=(1, 2))
         decided = np.bincount(body, np.abs(agreement), count) > 0
         reverse = np.bincount(body, agreement, count) < 0
     # A body is closed if none of its edges is a border, or shared by more than two faces.
@@ -295,39 +338,52 @@ def _winding(
         volume = np.bincount(body, sign * triple, count)
         reverse = np.where(closed, volume < 0, reverse)
     turned = turned ^ reverse[body]
+    if turned.any():
+        surface.faces = np.where(turned[:, None], faces[:, ::-1], faces)
+        surface.measures = surface.measures.turned(turned)
+        surface.edges = Edges.of(surface.faces)
+        if surface.normals is not None:
+            surface.normals = np.where(
+                turned[:, None, None], surface.normals[:, ::-1], surface.normals
+            )
 
     members = np.bincount(body, minlength=count)
     mixed = np.bincount(body, parts.turned, count) > 0
     report.bodies = int(np.count_nonzero(members))
     report.bodies_turned = int(np.count_nonzero(reverse))
     report.faces_turned = int(np.count_nonzero(parts.turned))
-    open_mixed = (mixed & is_open & ~decided)[body]
-    return turned, open_mixed, parts.twisted
+    return (mixed & is_open & ~decided)[body], parts.twisted
 
 
 def _normals(
-    vertices: Reals, faces: Ints, flat: Reals, area: Reals, edges: Edges, normals: Reals | None,
-    crease: float | None, smoothing: Ints | None, report: MeshReport,
-) -> Reals:  # fmt: skip
+    surface: _Surface, crease: float | None, smoothing: Ints | None, report: MeshReport
+) -> Reals:
     """The unit normals of all corners, float64[F, 3, 3]: the file's, else made here."""
+
+    def made(angle: float) -> Reals:
+        report.crease = angle
+        return corner_normals_of(
+            surface.vertices, surface.faces, surface.measures, surface.edges, angle, smoothing
+        )
+
+    normals = surface.normals
     if normals is not None and crease is None:
-        usable = np.isfinite(normals).all(axis=-1) & np.any(normals != 0, axis=-1)
+        usable = np.any(normals != 0, axis=-1)
         missing = int(np.count_nonzero(~usable))
         if missing < usable.size:
             report.normals, report.corners_made = "of the file", missing
-            normals = normalize(np.where(usable[..., None], normals, 0.0))
+            normals = normalize(normals)
             if not missing:
                 return normals
-            made = corner_normals_of(vertices, faces, flat, area, edges, DEFAULT_CREASE, smoothing)
-            report.crease = DEFAULT_CREASE
-            return np.where(usable[..., None], normals, made)
+            return np.where(usable[..., None], normals, made(DEFAULT_CREASE))
     angle = DEFAULT_CREASE if crease is None else crease
-    report.corners_made, report.crease = 3 * len(faces), angle
+    report.corners_made = 3 * len(surface.faces)
     report.normals = f"made here, crease {angle:g} degrees"
+    result = made(angle)
     if smoothing is not None:
         report.normals = "made here, by the smoothing groups of the file"
         report.crease = None if (smoothing >= 0).all() else angle
-    return corner_normals_of(vertices, faces, flat, area, edges, angle, smoothing)
+    return result
 
 
 def _file_materials(
@@ -343,7 +399,7 @@ def _file_materials(
             said = said_by_name.get(name, said | {"?mat.name": name})
         known = prepared.materials is None or index < prepared.materials
         defined = known and name != "DefaultMaterial"
-        result.append(file_material(said, defined, suffix != ".ply"))
+        result.append(file_material(said, defined, suffix in (".glb", ".gltf")))
     return result, np.array(groups or [-1], np.int64)
 
 
