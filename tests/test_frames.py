@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from phong75.model import twin
-from phong75.model.analysis import metrics
+from phong75.model.analysis import error_budget, metrics, reference, undecided
 from phong75.model.config import DEFAULT as C
-from phong75.model.front.scene import bundled_scenes, load_scene
+from phong75.model.frame import fitted
+from phong75.model.front.scene import bundled_scenes, load_scene, technique_scenes
 from phong75.model.scene_to_frame import front_end
 from phong75.scripts import recorded, scene_results
 from phong75.sim import design
@@ -37,7 +38,27 @@ def test_bundled_scene(scene):
         assert not differences(new, kept), "the record is old: make scenes RECORD=1"
 
 
-def test_each_dot_is_shaded_once():
+@pytest.mark.parametrize("scene", technique_scenes())
+def test_technique_scene(scene):
+    """RTL = model with and without stalls, in the derived bound, at full rate."""
+    frame = front_end(load_scene(scene)).frame
+    config = fitted(C, frame)
+    assert config != C, "the scene needs more than the default configuration"
+    bench = Bench("frame_bench", config, quick=True)
+    jobs = [SimJob(frame), SimJob(frame, idle=64, stall=100, seed=75)]
+    expected, (free, stalled) = twin.render(frame, config), simulate_jobs(jobs, config, bench)
+    for result in (free, stalled):
+        assert result.complete and not result.illegal_spans and not result.unsupported
+        compared = metrics.compare(expected, result.pixels)
+        assert compared.mismatches == 0, compared.first
+    assert free.stall_cycles == 0 < stalled.stall_cycles
+    ideal = reference.render(frame, config)
+    ideal = undecided.nearest(free.pixels.rgb, ideal, frame, config).ideal
+    error = np.abs(free.pixels.rgb - ideal).max()
+    assert error <= error_budget.bound_lsb(frame, config)
+
+
+def test_each_pixel_is_shaded_once():
     for scene in bundled_scenes():
         pixels = twin.render(front_end(load_scene(scene)).frame)
         assert len(np.unique(pixels.y * C.max_size + pixels.x)) == len(pixels.x), scene

@@ -22,8 +22,6 @@ from phong75.model.front.scene import (
     Material,
     Scene,
     SceneObject,
-    load_scene,
-    technique_scenes,
 )
 from phong75.model.front.visibility import GRID
 from phong75.model.scene_to_frame import front_end
@@ -486,26 +484,6 @@ def test_second_differences_go_where_no_span_bends():
 
 
 # -- through the RTL -------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", technique_scenes())
-def test_technique_scenes(name):
-    """RTL = model under stalls, in the derived bound, at full rate; as the default size."""
-    made = front_end(load_scene(name))
-    frame, config = made.frame, fitted(DEFAULT, made.frame)
-    assert config.digest != DEFAULT.digest
-    config = replace(QUADRATIC, name=config.name) if config.normal_order == 2 else config
-    bench = Bench("frame_bench", QUADRATIC, quick=True)
-    free, stalled = simulate_jobs(
-        [SimJob(frame), SimJob(frame, idle=64, stall=100, seed=75)], QUADRATIC, bench
-    )
-    expected = twin.render(frame, config)
-    for result in (free, stalled):
-        assert result.complete and not result.illegal_spans and not result.unsupported
-        assert metrics.compare(expected, result.pixels).mismatches == 0
-    assert free.stall_cycles == 0
-    error = np.abs(free.pixels.rgb - reference.render(frame, config)).max()
-    assert error <= error_budget.bound_lsb(frame, config) <= 1
 
 
 def test_corner_cases():

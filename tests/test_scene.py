@@ -10,7 +10,13 @@ import trimesh
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import InputError
 from phong75.model.front.camera import FILL
-from phong75.model.front.scene import MAX_TESSELLATION, Material, bundled_scenes, load_scene
+from phong75.model.front.scene import (
+    MAX_TESSELLATION,
+    Material,
+    bundled_scenes,
+    load_scene,
+    technique_scenes,
+)
 from phong75.model.scene_to_frame import front_end
 
 MINIMAL = '[[objects]]\nshape = "sphere"\nsegments = 8\nrings = 4\n'
@@ -41,17 +47,10 @@ def on_screen(scene):
 
 def test_bundled_scenes():
     assert set(bundled_scenes()) == {
-        "coloured_lights",
-        "cone",
-        "lamps",
-        "pyramid",
-        "sphere",
-        "still_life",
-        "teapot",
-        "toon",
-        "torus",
-    }
-    for name in bundled_scenes():
+        "cone", "pyramid", "sphere", "still_life", "teapot", "torus",
+    }  # fmt: skip
+    assert set(technique_scenes()) == {"coarse_torus", "coloured_lights", "lamps", "toon"}
+    for name in (*bundled_scenes(), *technique_scenes()):
         scene = load_scene(name)
         assert (scene.name, scene.width, scene.height) == (name, 640, 480)
         x, y = on_screen(scene)

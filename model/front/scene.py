@@ -286,6 +286,13 @@ def technique_scenes() -> list[str]:
     return sorted(p.stem for p in TECHNIQUE_SCENES.glob("*.toml"))
 
 
+def bundled_path(name: str) -> Path | None:
+    """The file of a bundled scene or technique scene; None if there is none of this name."""
+    folders = dict.fromkeys(bundled_scenes(), SCENES)
+    folders |= dict.fromkeys(technique_scenes(), TECHNIQUE_SCENES)
+    return folders[name] / f"{name}.toml" if name in folders else None
+
+
 def load_scene(
     name_or_path: str | Path, size: tuple[int, int] | None = None, config: Config = DEFAULT
 ) -> Scene:
@@ -296,20 +303,14 @@ def load_scene(
     InputError.
     """
     name = str(name_or_path)
-    bundled = [*bundled_scenes(), *technique_scenes()]
-    if name in bundled:
-        folder = TECHNIQUE_SCENES if name in technique_scenes() else SCENES
-        path = folder / f"{name}.toml"
-    else:
-        path = Path(name)
-        if not path.is_file():
-            if path.exists():
-                raise InputError(f"{name}: not a file")
-            close = difflib.get_close_matches(name, bundled, 1)
-            hint = f"; did you mean {close[0]}?" if close else ""
-            raise InputError(
-                f"{name}: no such file, nor a bundled scene ({', '.join(bundled)}){hint}"
-            )
+    path = bundled_path(name) or Path(name)
+    if not path.is_file():
+        if path.exists():
+            raise InputError(f"{name}: not a file")
+        bundled = [*bundled_scenes(), *technique_scenes()]
+        close = difflib.get_close_matches(name, bundled, 1)
+        hint = f"; did you mean {close[0]}?" if close else ""
+        raise InputError(f"{name}: no such file, nor a bundled scene ({', '.join(bundled)}){hint}")
     suffix = path.suffix.lower()
     if suffix == ".toml":
         return _scene(_Table(_read_toml(path), str(path)), path, size, config)

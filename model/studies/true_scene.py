@@ -24,7 +24,7 @@ from phong75.model.arrays import Ints, Reals
 from phong75.model.config import DEFAULT
 from phong75.model.front.camera import Camera
 from phong75.model.front.mesh import Mesh, normalize, rotation_matrix
-from phong75.model.front.scene import SCENES, SHAPES, Scene, SceneObject, bundled_scenes
+from phong75.model.front.scene import SHAPES, Scene, SceneObject, bundled_path
 from phong75.model.scene_to_frame import front_end
 from phong75.model.studies import tessellation
 from phong75.model.studies.surfaces import Solid, Sphere, Torus
@@ -87,7 +87,7 @@ def true_objects(name_or_path: str | Path) -> list[TrueObject]:
     Raises NoTrueSurfaceError.
     """
     name = str(name_or_path)
-    path = SCENES / f"{name}.toml" if name in bundled_scenes() else Path(name)
+    path = bundled_path(name) or Path(name)
     if path.suffix.lower() != ".toml":
         raise NoTrueSurfaceError(f"{path.name} is a mesh")
     tables = tomllib.loads(path.read_text(encoding="utf-8"))["objects"]
