@@ -19,7 +19,7 @@ from pathlib import Path
 import phong75
 from phong75.model.analysis import pruning
 from phong75.model.config import DEFAULT, Config
-from phong75.model.frame import Frame, InputError
+from phong75.model.frame import Frame, InputError, with_reflectance
 from phong75.model.front.scene import Material, load_scene
 from phong75.model.registers import writes
 from phong75.model.scene_to_frame import front_end
@@ -73,6 +73,7 @@ def export(
     if prune and not scene:
         raise InputError("pruning needs a scene: what to keep depends on the picture")
     frame = _frame(scene, size if size or prune else SIZE, config)
+    config = with_reflectance(config, frame)
     if prune:
         name = f"{config.name}-{Path(scene or '').stem}"
         config = dataclasses.replace(pruning.prune(frame, config)[0], name=name)
