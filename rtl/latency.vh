@@ -179,12 +179,12 @@
   + 2 )                              /* sum */
 
 // From a line to the amounts of its jumps.
-`define PHONG_STEPPED_LINE_FALL \
+`define PHONG_STEPPED_FALL_LATENCY \
   ( `PHONG_MULTIPLIER_LATENCY        /* line: step * offset */ \
   + 1 )                              /* line: add */
 
 `define PHONG_STEPPED_LINE_LATENCY \
-  ( `PHONG_STEPPED_LINE_FALL \
+  ( `PHONG_STEPPED_FALL_LATENCY \
   + 1                                /* level: subtract */ \
   + `PHONG_ROUND_SATURATE_LATENCY )  /* result */
 

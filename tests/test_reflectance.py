@@ -29,6 +29,7 @@ from phong75.model.reflectance import (
 from phong75.model.registers import address_bits, writes
 from phong75.model.scene_to_frame import front_end
 from phong75.model.twin.reflectance.reflectance_table import fold, lookup, octave, offset_bits
+from phong75.scripts.export import export
 from phong75.sim import design
 from phong75.sim.build import Bench
 from tests.configuration_tests import plain, reflectant
@@ -296,6 +297,16 @@ def test_weights_with_jumps_are_exact_at_their_points():
     points, jumps, smeared = weight_points(weight, C)
     assert 255 * weight_distance(weight, points, jumps, C) < 0.005 and not smeared
     assert jumps[0].tolist() == [0, int(np.ceil(place * C.cosine.one)), round(0.8 * 65536)]
+
+
+def test_an_export_holds_what_the_scene_needs(tmp_path):
+    names = export(C, tmp_path / "out", scene="toon", size=(64, 48))
+    assert {"reflectance_table", "jumps", "stepped_weight"} <= {
+        name.removesuffix(".v").removeprefix("rtl/default_curve_jumps_steps_") for name in names
+    }
+    ports = (tmp_path / "out/ports.md").read_text()
+    assert "a line of the material's curve" in ports and "Jump k of the curve" in ports
+    assert "Jump k of W(i), k from 0 to 0" in ports
 
 
 # -- broken designs --------------------------------------------------------------------------------

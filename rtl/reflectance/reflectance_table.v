@@ -158,7 +158,7 @@ module reflectance_table (
   always @(posedge clk) word_p7 <= words_p6[bank_p6*WORD_BITS+:WORD_BITS];
 
   // ---- jumps: they are due when the line is ----
-  localparam JUMPS_AT = OCTAVE_LATENCY + `PHONG_RAM_LATENCY + 1 + `PHONG_STEPPED_LINE_FALL
+  localparam JUMPS_AT = OCTAVE_LATENCY + `PHONG_RAM_LATENCY + 1 + `PHONG_STEPPED_FALL_LATENCY
       - `PHONG_JUMPS_LATENCY;  // cycles from `versine` to the look-up
 
   wire [COEFFICIENT_BITS+1:0] fall;

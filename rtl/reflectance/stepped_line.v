@@ -20,7 +20,7 @@ module stepped_line #(
     input wire [`PHONG_COEFFICIENT_BITS:0]   step,    // s1.16
     input wire [OFFSET_BITS-1:0]             offset,  // unsigned, all of it fraction
 
-    // PHONG_STEPPED_LINE_FALL cycles later
+    // PHONG_STEPPED_FALL_LATENCY cycles later
     input  wire [`PHONG_COEFFICIENT_BITS+1:0] fall,  // u3.16
     output wire [OUT_BITS-1:0]                value  // unsigned, DROP fraction bits less
 );

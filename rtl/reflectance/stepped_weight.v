@@ -61,7 +61,7 @@ module stepped_weight (
   );
 
   // ---- jumps: they are due when the line is ----
-  localparam JUMPS_AT = `PHONG_RAM_LATENCY + `PHONG_STEPPED_LINE_FALL - `PHONG_JUMPS_LATENCY;
+  localparam JUMPS_AT = `PHONG_RAM_LATENCY + `PHONG_STEPPED_FALL_LATENCY - `PHONG_JUMPS_LATENCY;
 
   wire [MATERIAL_BITS-1:0] material_jumps;
   wire [COSINE_BITS-1:0] cosine_jumps;

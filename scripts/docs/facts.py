@@ -171,6 +171,15 @@ def register_table(config: Config = C) -> str:
          "builds for several lights: lights of the frame minus 1"),
         (f"`{{1, material, {field['highlight']}…{field['highlight'] + 2}}}`",
          f"builds with coloured highlights: ks·Ls of red, green, blue ({c})"),
+        *(
+            (f"`{{1, material, {field[name]} + 2k}}`, `{{1, material, {field[name] + 1} + 2k}}`",
+             f"builds with jumps: jump k of {what}, {{above, threshold ({operand})}}; its amount "
+             f"({c})")
+            for name, what, operand in (
+                ("weight_jump", "W(i)", config.cosine),
+                ("curve_jump", "the curve of 1 − cos(s)", config.versine),
+            )
+        ),
     ]  # fmt: skip
     return markdown(("address", "contents"), rows, left=2)
 

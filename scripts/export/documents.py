@@ -225,6 +225,7 @@ def ports_page(config: Config, top: str) -> str:
             f"`write_address` is {{kind (1 bit), material ({material} bits), index ({index} "
             "bits)}. Write only while no pixel is in flight: a write changes the pixels that are. "
             "The last write must be 4 cycles old when the first span of the frame is taken.",
+            *_reflectance_writes(config),
             _table(("address", "word", "meaning", "in this configuration"), _write_rows(config)),
             "W(i) is the weight of the highlight, Cp the colour of the surface, d its ambient "
             "share, n the exponent of the highlight, all of eq. (3) of Phong 1975: "
@@ -237,6 +238,31 @@ def ports_page(config: Config, top: str) -> str:
             "answered with `unsupported`."
         )
     return "\n\n".join(out) + "\n"
+
+
+def _reflectance_writes(config: Config) -> list[str]:
+    """What the write port holds for curves of cos(s), and for jumps."""
+    out = []
+    if config.has_curves:
+        out.append(
+            "The address has one bit more at its top. If it is 1, the address is {1, zeros, "
+            f"material ({config.material_bits} bits), line ({config.segment_bits} bits)}} and the "
+            "word {step (s1.16), left (u1.16)}: a line of the material's curve of 1 - cos(s). A "
+            "line's number is {1 - cos(s) >= 1/2, octave, place in the octave}. n is not written."
+        )
+    for name, what, operand, count in (
+        ("weight_jump", "W(i)", f"cos(i) ({config.cosine})", config.weight_jumps),
+        ("curve_jump", "the curve", f"1 - cos(s) ({config.versine})", config.curve_jumps),
+    ):
+        if count:
+            first = FIELDS[name]
+            out.append(
+                f"Jump k of {what}, k from 0 to {count - 1}: `{{1, material, {first} + 2k}}` is "
+                f"{{above, threshold of {operand}}}, `{{1, material, {first + 1} + 2k}}` the "
+                "amount (u1.16), which is subtracted at and above the threshold if `above` is 1, "
+                "else below it."
+            )
+    return out
 
 
 def _instance(config: Config, top: str) -> str:
