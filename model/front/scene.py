@@ -152,7 +152,8 @@ class Scene:
     towards the light, scene axes. two_sided: show both sides of all surfaces; the normals of faces
     that turn away from the eye are reversed. interpolation: "linear" (the paper's) or
     "normalized_edges" (see `interpolation`). toward_light: light both sides of all surfaces; the
-    hardware reverses normals that point away from the light (Phong 1975, "Illumination", remark 2).
+    hardware reverses normals that point away from the light ("it can be assumed that the normal
+    will always point toward the light source", Phong 1975).
     lit_faces_only: leave faces dark that turn away from the light, although interpolated normals
     would light a part of them.
     """
