@@ -244,9 +244,9 @@ class Scene:
     "normalized_edges" (see `interpolation`) or one of `mid_edge_normals.RULES`. ambient: Ia of red,
     green and blue. lights: all lights, by default a white one at `light`. remarks: sentences about
     what was assumed where the file leaves it open. toward_light: light both sides of all surfaces;
-    the hardware reverses normals that point away from the light (Phong 1975, "Illumination",
-    remark 2). lit_faces_only: leave faces dark that turn away from the light, although interpolated
-    normals would light a part of them.
+    the hardware reverses normals that point away from the light ("it can be assumed that the normal
+    will always point toward the light source", Phong 1975). lit_faces_only: leave faces dark that
+    turn away from the light, although interpolated normals would light a part of them.
     """
 
     name: str

@@ -211,7 +211,8 @@ def _why_empty(scene: Scene) -> str:
     points = np.concatenate([o.mesh.vertices[o.mesh.faces] for o in scene.objects])
     corners = scene.camera.project(points, scene.width, scene.height)
     behind = np.all(corners[..., 2] < scene.camera.near, axis=1)
-    away = ~behind & (_screen_side(corners) >= 0) & ~_of_triangles(scene, "two_sided")
+    two_sided = _of_triangles(scene, "two_sided") | scene.two_sided | scene.toward_light
+    away = ~behind & ~two_sided & (_screen_side(corners) >= 0)
     beside = len(points) - np.count_nonzero(behind) - np.count_nonzero(away)
     reasons = [
         (np.count_nonzero(away), "turn away from the eye (try two_sided = true in a scene file)"),

@@ -2,8 +2,9 @@
 """Reads one mesh file with Assimp, in a process of its own, and writes what is in the file.
 
 `library.py` starts this file as a script:
-`python -I -S child.py LIBRARY FILE CPU_S MEMORY ARRAYS CONTENT PATH`. ARRAYS is the number of
-an open file for the results; CONTENT is that of a file to read in place of FILE, or -1. A parser
+`python -I -S child.py LIBRARY FILE CPU_S MEMORY SIZE ARRAYS CONTENT PATH`. SIZE is that of FILE in
+bytes; ARRAYS is the number of an open file for the results; CONTENT is that of a file to read in
+place of FILE, or -1. A parser
 in C++ may crash or never end on a hostile file. The limits end this process then, and nothing but
 this process. The script imports nothing of the package, so that its start takes milliseconds; it
 imports numpy, from PATH, only for many faces.
@@ -17,12 +18,14 @@ and colours float32[V, 4] where it has them, faces uint32[F, 3].
 from __future__ import annotations
 
 import ctypes
+import importlib
 import json
 import os
 import resource
 import stat
 import struct
 import sys
+import threading
 from array import array
 from typing import Any, BinaryIO
 
@@ -31,6 +34,9 @@ TRIANGULATE, SORT_BY_PRIMITIVE = 0x8, 0x8000
 
 #: More faces than this are collected with numpy, whose import costs as much as that many faces.
 MANY_FACES = 100_000
+
+#: A file of more bytes than this may have so many faces.
+LARGE_FILE = 2_000_000
 
 #: The version of Assimp whose structures are declared below.
 MAJOR_VERSION = 6
@@ -206,7 +212,7 @@ def load_library(path: str) -> ctypes.CDLL:
     return assimp
 
 
-def triangles(mesh: _Mesh, path: str) -> bytes | Any:
+def triangles(mesh: _Mesh) -> bytes | Any:
     """Indices uint32[F, 3] of the faces with three corners, as an object with a buffer."""
     count = mesh.face_count
     if count <= MANY_FACES:
@@ -215,7 +221,6 @@ def triangles(mesh: _Mesh, path: str) -> bytes | Any:
             if face.count == 3:
                 result.extend((_Uint * 3).from_address(face.indices))
         return result
-    sys.path.insert(0, path)
     import numpy as np
 
     class Memory:  # all of this process's memory as one array of words
@@ -274,7 +279,7 @@ def nodes(root: _Node) -> list[dict[str, Any]]:
     return result
 
 
-def contents(scene: _Scene, out: BinaryIO, path: str) -> dict[str, Any]:
+def contents(scene: _Scene, out: BinaryIO) -> dict[str, Any]:
     """What `scene` holds, without its numbers, which go to `out`."""
 
     def write(address: int | None, components: int, count: int) -> bool:
@@ -286,7 +291,7 @@ def contents(scene: _Scene, out: BinaryIO, path: str) -> dict[str, Any]:
     for pointer in scene.meshes[: scene.mesh_count]:
         mesh = pointer.contents
         count = mesh.vertex_count
-        faces = triangles(mesh, path) if mesh.face_count else b""
+        faces = triangles(mesh) if mesh.face_count else b""
         write(mesh.vertices, 3, count)
         meshes.append({
             "name": mesh.name.text, "vertices": count, "material": mesh.material,
@@ -307,13 +312,23 @@ def contents(scene: _Scene, out: BinaryIO, path: str) -> dict[str, Any]:
 
 
 def main(
-    library: str, name: str, cpu_s: str, memory: str, arrays: str, content: str, path: str
+    library: str,
+    name: str,
+    cpu_s: str,
+    memory: str,
+    size: str,
+    arrays: str,
+    content: str,
+    path: str,
 ) -> dict[str, Any]:
     """Read the file `name`; returns what is in the file, or {"error": why not}."""
+    sys.path.insert(0, path)
     limit(int(cpu_s), int(memory))
     assimp = load_library(library)
     given = os.fdopen(int(content), "rb") if int(content) >= 0 else None
     files = Files(os.fsencode(name), given)
+    if int(size) > LARGE_FILE:  # numpy loads while Assimp reads
+        threading.Thread(target=importlib.import_module, args=("numpy",), daemon=True).start()
     scene = assimp.aiImportFileExWithProperties(
         os.fsencode(name), TRIANGULATE | SORT_BY_PRIMITIVE, ctypes.byref(files.system), None
     )
@@ -321,7 +336,7 @@ def main(
     if not scene:
         return {"error": assimp.aiGetErrorString().decode(errors="replace"), "missing": missing}
     with os.fdopen(int(arrays), "wb") as out:
-        return contents(scene.contents, out, path) | {"missing": missing}
+        return contents(scene.contents, out) | {"missing": missing}
 
 
 if __name__ == "__main__":

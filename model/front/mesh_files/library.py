@@ -102,7 +102,7 @@ def _run_child(path: Path, prepared: Prepared, arrays: int) -> dict[str, Any]:
             content.flush()
         command = [
             sys.executable, "-I", "-S", str(CHILD),
-            str(library_path()), str(path), str(cpu_s), str(memory),
+            str(library_path()), str(path), str(cpu_s), str(memory), str(prepared.size),
             str(arrays), str(content.fileno() if prepared.content is not None else -1),
             str(Path(np.__file__).parent.parent),
         ]  # fmt: skip
