@@ -158,6 +158,10 @@ class Config:
         for f in dataclasses.fields(self):
             if f.name in ONE_LIGHT_ONLY and getattr(self, f.name) != f.default:
                 raise ValueError(f"{f.name} is for builds with one white light")
+        if self.attenuation and (1 << self.weight_index_bits) > self.materials << 4:
+            raise ValueError("the address map has no place for so many intervals of attenuation")
+        if self.attenuation and self.weight_index_bits < 5:
+            raise ValueError("weight_index_bits is below 5: no address for attenuation")
 
     # -- technique ---------------------------------------------------------------------------------
     # phong interpolates normals, gouraud the intensities of vertices; flat holds one intensity per
@@ -201,11 +205,14 @@ class Config:
     intensity: Format = _unsigned(1, 24)  # S of one channel, before it is scaled to the code
 
     # -- lights ------------------------------------------------------------------------------------
-    # 1 light that is not coloured: eq. (3), in rtl/core/; else the sum over lights, in rtl/lights/.
+    # 1 white light at infinity: eq. (3), in rtl/core/; else the sum over lights, in rtl/lights/.
     lights: int = 1  # most lights of a frame, 1 to 8
     units: int = 1  # shading units side by side: 1, 2, 4 or 8, at most `lights`
     highlight_colour: bool = False  # a colour for each light's highlight, or a sum beyond Cp <= 1
     highlight: Format = _unsigned(0, 18)  # W(i) cos(s)**n, rounded before it is coloured
+    span_half_vector: bool = False  # each span brings its half vectors: a light at a place
+    attenuation: bool = False  # a light that falls with the distance from it
+    depth: Format = _signed(0, 29)  # that distance, interpolated; 0 to 1 are the frame's range
 
     # -- features ----------------------------------------------------------------------------------
     # A feature that a scene does not need is left out: see model/analysis/pruning.py. The comment
@@ -276,7 +283,14 @@ class Config:
     @property
     def sums_lights(self) -> bool:
         """Whether a pixel is a sum over lights (rtl/lights/), not eq. (3) for one white light."""
-        return self.technique == "phong" and (self.lights > 1 or self.highlight_colour)
+        return self.technique == "phong" and (
+            self.lights > 1 or self.highlight_colour or self.span_half_vector or self.attenuation
+        )
+
+    @property
+    def rounds_highlight(self) -> bool:
+        """Whether W(i) cos(s)**n of a light is rounded, since it is multiplied once more."""
+        return self.highlight_colour or self.attenuation
 
     @property
     def span_units(self) -> int:

@@ -4,7 +4,9 @@
 The camera projects the triangles of the scene's objects (`camera`). Hidden surfaces are removed per
 scan line, which leaves visible segments (`visibility`). Each segment becomes a span: the normal at
 its first pixel and the step from pixel to pixel (`interpolation`), in the light frame. With several
-lights, the same vectors are also turned into the frame of each further light.
+lights, the same vectors are also turned into the frame of each further light. The frame of a light
+at a place changes along a span, which `phong75.model.places` approximates; a span along which the
+direction to such a light turns too far is cut.
 
 For Gouraud and flat shading a span carries intensities instead of normals: those of the vertices,
 or that of the face. The front end does not know how the hardware shades a vertex; the caller of
@@ -19,6 +21,7 @@ from typing import Protocol
 
 import numpy as np
 
+from phong75.model import places
 from phong75.model.arrays import ArrayLike, Ints, Reals, Spans
 from phong75.model.config import Config
 from phong75.model.frame import (
@@ -29,6 +32,10 @@ from phong75.model.frame import (
     FurtherLight,
     InputError,
     MaterialTable,
+    depth_codes,
+    distance_range,
+    falloff_codes,
+    half_angle_codes,
     half_vector_codes,
 )
 from phong75.model.front import visibility
@@ -37,19 +44,27 @@ from phong75.model.front.interpolation import interpolate, scan_line_weights
 from phong75.model.front.mesh import apply_matrix, face_normals, normalize
 from phong75.model.front.scene import WHITE, Light, Scene
 from phong75.model.front.visibility import GRID, Segments, Triangles
+from phong75.model.places import Place
+
+
+#: Columns of what is interpolated over a triangle: the normal; the exact intensities, in its place;
+#: the point (p/w, 1/w), and the centre of the face.
+NORMAL, INTENSITIES, POINT, CENTRE = slice(0, 3), slice(3, 6), slice(3, 7), slice(7, 10)
 
 
 class VertexShader(Protocol):
     """Gives the intensities that Gouraud and flat shading interpolate or hold."""
 
     def __call__(
-        self, normal: Reals, material: Ints, frame: Frame, exact: ExactFrame, config: Config
-    ) -> tuple[Reals, Reals]:
+        self, normal: Reals, material: Ints, frame: Frame, exact: ExactFrame, config: Config,
+        points: Reals,
+    ) -> tuple[Reals, Reals]:  # fmt: skip
         """S of red, green and blue, float64[n, 3], twice: as the hardware of `config` computes S,
         and by eq. (3) of the paper before any rounding.
 
         normal: float64[n, 3], unit vectors in the light frame. material: int64[n], rows of the
-        material table. frame, exact: registers and materials in codes and before rounding.
+        material table. frame, exact: registers and materials in codes and before rounding. points:
+        float64[n, 3], where the vertices or faces are, in the axes of `exact.places`.
         """
         ...
 
@@ -102,27 +117,75 @@ def make_frame(
         raise InputError(f"{scene.name}: has colours, but the pipeline is built for grey")
     frame_axes, eye = light_frame(scene.light, scene.camera.axes[2])
     frame, exact = _frame(scene, eye, config)
+    if any(light.place.source is not None for light in scene.lights):
+        exact.places = [light.place.turned(frame_axes) for light in scene.lights]
     _add_lights(scene, frame_axes, frame, exact, config)
     triangles = _triangles(scene, frame_axes, frame, exact, config, shade_vertices)
+    if config.technique != "phong":  # the intensities hold all lights
+        frame.further, exact.further, exact.places = [], [], []
 
     parts = []
     for segments, done in visible(triangles, scene.width, scene.height):
         if len(segments):
-            parts.append(_spans(triangles, segments, config, scene.interpolation))
+            parts.append(_spans(triangles, segments, config, scene.interpolation, exact))
         if progress:
             progress(done)
+    centre = np.zeros((0, 3))
     if parts:
-        frame.spans, exact.start, exact.step = map(np.concatenate, zip(*parts, strict=True))
+        frame.spans, start, step = map(np.concatenate, zip(*parts, strict=True))
         frame.spans["last"][-1] = True
-    if config.technique != "phong":  # the intensities hold all lights
-        frame.further, exact.further = [], []
-    for light, real in zip(frame.further, exact.further, strict=True):
-        start, step = exact.start @ real.turn.T, exact.step @ real.turn.T
-        light.start, light.step = encode(start, step, frame.spans["length"], config)
+        at = INTENSITIES if config.technique != "phong" else NORMAL
+        exact.start, exact.step = start[:, at], step[:, at]
+        if exact.places:
+            exact.point, exact.point_step = start[:, POINT], step[:, POINT]
+            centre = start[:, CENTRE]
+    _add_spans(frame, exact, centre, config)
     meshes = [o.mesh for o in scene.objects]
     return FrontEnd(
         frame, exact, sum(len(m.faces) for m in meshes), sum(m.degenerate for m in meshes)
     )
+
+
+def _add_spans(frame: Frame, exact: ExactFrame, centre: Reals, config: Config) -> None:
+    """Give each light of `frame` its start and step, and what a light at a place needs beside them.
+
+    centre: float64[n, 3], of the face of each span.
+    """
+    spans, here = frame.spans, exact.places or [Place()] * frame.lights
+    steps = np.maximum(spans["length"].astype(np.int64) - 1, 0)[:, None]
+    first = middle = last = np.zeros((len(spans), 3))
+    if len(exact.point):
+        along = [exact.point + part * steps * exact.point_step for part in (0.0, 0.5, 1.0)]
+        first, middle, last = (p[:, :3] / p[:, 3:] for p in along)
+    normals = exact.start, exact.start + steps * exact.step
+    placed = any(place.position is not None for place in here)
+    falls = any(place.falloff for place in here)
+    half_vectors = np.zeros((len(here), len(spans), 2), np.int64)
+    depths, falloff = np.zeros_like(half_vectors), []
+    for number, place in enumerate(here):
+        if place.position is not None:
+            start, end, angle = places.span_ends(
+                place, exact.eye, (first, middle, last, centre), normals
+            )
+            slope = (end - start) / np.maximum(steps, 1)
+            codes = encode(start, slope, spans["length"], config)
+            half_vectors[number] = half_angle_codes(angle, config)
+        else:
+            turn = exact.further[number - 1].turn if number else np.eye(3)
+            codes = encode(exact.start @ turn.T, exact.step @ turn.T, spans["length"], config)
+            half_vectors[number] = frame.light(number, config).half_vector
+        if number:
+            frame.further[number - 1].start, frame.further[number - 1].step = codes
+        elif place.position is not None:
+            spans["start"], spans["step"] = codes
+        ends = [place.distance(p, exact.eye) for p in (first, last)]
+        low, high = distance_range(ends)
+        depths[number] = depth_codes(*ends, steps[:, 0], low, high, config)
+        falloff.append(falloff_codes(place.falloff, low, high, config))
+    if placed:
+        frame.half_vectors = half_vectors
+    if falls:
+        frame.depths, frame.falloff = depths, np.stack(falloff)
 
 
 def _frame(scene: Scene, eye: Reals, config: Config) -> tuple[Frame, ExactFrame]:
@@ -188,8 +251,9 @@ def _triangles(
 
     `Triangles.value` holds what is interpolated: for Phong's shading the normal in the light frame,
     float64[T, 3, 3]; else float64[T, 3, 6], the intensities of red, green, blue as the hardware
-    computes them and then the exact ones. frame_axes: float64[3, 3], rows are the axes of the light
-    frame in world coordinates.
+    computes them and then the exact ones. With `exact.places` the normal is followed by the point
+    (p/w, 1/w) and by the centre of the face. frame_axes: float64[3, 3], rows are the axes of the
+    light frame in world coordinates.
     """
     meshes = [o.mesh for o in scene.objects]
     points = np.concatenate([m.vertices[m.faces] for m in meshes])
@@ -200,12 +264,21 @@ def _triangles(
         normal = np.concatenate([m.normals for m in meshes])
     value = normalize(apply_matrix(frame_axes, normal))
     material = np.repeat([o.material for o in scene.objects], [len(m.faces) for m in meshes])
+    place = apply_matrix(frame_axes, points)
+    centre = np.repeat(place.mean(axis=1, keepdims=True), 3, axis=1)
     if config.technique != "phong":
-        both = shade_vertices(value.reshape(-1, 3), np.repeat(material, 3), frame, exact, config)
+        seen = centre if config.technique == "flat" else place
+        both = shade_vertices(
+            value.reshape(-1, 3), np.repeat(material, 3), frame, exact, config, seen.reshape(-1, 3)
+        )
         value = np.concatenate(both, axis=-1).reshape(-1, 3, 6)
+    elif exact.places:
+        value = np.concatenate([value, place, np.ones_like(value[..., :1]), centre], axis=-1)
     corners = scene.camera.project(points, scene.width, scene.height)
     corners, value, material = visibility.clip(corners, value, material, scene.camera.near)
     w = corners[..., 2]
+    if value.shape[-1] > POINT.start and config.technique == "phong":
+        value[..., POINT] /= w[..., None]
     return visibility.set_up(
         corners[..., 0] / w,
         corners[..., 1] / w,
@@ -259,19 +332,21 @@ def _at_pixels(
 
 
 def _spans(
-    triangles: Triangles, segments: Segments, config: Config, interpolation: str
+    triangles: Triangles, segments: Segments, config: Config, interpolation: str, exact: ExactFrame
 ) -> tuple[Spans, Reals, Reals]:
-    """The spans SPAN_DTYPE[n] of `segments`, and their start and step before rounding,
-    float64[n, 3] each.
+    """The spans SPAN_DTYPE[n] of `segments`, and the start and step of what is interpolated before
+    rounding, float64[n, C] each.
 
     The step is the difference between the values at both ends of the segment, divided by the number
     of steps. Each value is a mean of the vertices' values with weights that are exact even in
     slivers; a gradient over the triangle's plane would not be.
     """
-    ends = [
-        _at_pixels(triangles, segments, x, triangles.value, interpolation == "normalized_edges")
-        for x in (segments.left, segments.right - 1)
-    ]
+    ends = []
+    for x in (segments.left, segments.right - 1):
+        end = _at_pixels(triangles, segments, x, triangles.value)
+        if interpolation == "normalized_edges":
+            end[:, NORMAL] = _at_pixels(triangles, segments, x, triangles.value[..., NORMAL], True)
+        ends.append(end)
     length = segments.right - segments.left
     start, step = ends[0], (ends[1] - ends[0]) / np.maximum(length - 1, 1)[:, None]
 
@@ -279,19 +354,35 @@ def _spans(
     # spans of one pixel each.
     rounded = np.floor(np.ldexp(step[:, :3], config.normal.fraction) + 0.5)
     single = ~np.all(config.normal.contains(rounded), axis=1)
-    pieces = np.where(single, length, 1)
+    pieces = np.where(single, length, _pieces(ends, length, exact))
     piece = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)
     row = np.repeat(np.arange(len(length)), pieces)
-    start = start[row] + piece[:, None] * step[row]
+    first = length[row] * piece // pieces[row]
+    start = start[row] + first[:, None] * step[row]
     step = np.where(single[row, None], 0.0, step[row])
 
     spans = np.zeros(len(row), SPAN_DTYPE)
-    spans["x"] = segments.left[row] + piece
+    spans["x"] = segments.left[row] + first
     spans["y"] = segments.y[row]
-    spans["length"] = np.where(single[row], 1, length[row])
+    spans["length"] = length[row] * (piece + 1) // pieces[row] - first
     spans["material"] = triangles.material[segments.triangle[row]]
     spans["start"], spans["step"] = encode(start[:, :3], step[:, :3], spans["length"], config)
-    return spans, start[:, -3:], step[:, -3:]
+    return spans, start, step
+
+
+def _pieces(ends: list[Reals], length: Ints, exact: ExactFrame) -> Ints:
+    """Into how many spans each segment is cut, int64[n], so that the direction to a light at a
+    place turns by at most about `places.MOST_TURN` along a span.
+
+    ends: what is interpolated, at the first and the last pixel, float64[n, C].
+    """
+    pieces = np.ones_like(length)
+    for place in exact.places:
+        if place.position is not None and place.rule != "face":
+            first, last = (end[:, POINT][:, :3] / end[:, POINT][:, 3:] for end in ends)
+            turn = places.turn(place.position, first, last, exact.eye)
+            pieces = np.maximum(pieces, np.ceil(turn / places.MOST_TURN).astype(np.int64))
+    return np.minimum(pieces, length)
 
 
 def encode(start: Reals, step: Reals, length: ArrayLike, config: Config) -> tuple[Ints, Ints]:
