@@ -16,7 +16,7 @@ setting = $(if $(filter $1,$(given)),$($1))
 quote = '$(subst ','\'',$(1))'
 
 # Which variables each target takes. Any other is refused, before anything is run.
-variables_run := SCENE SIZE TECHNIQUE CONFIG FPS CLOCK_MHZ PRUNE SPANS OUT
+variables_run := SCENE SIZE TECHNIQUE CONFIG UNITS FPS CLOCK_MHZ PRUNE SPANS OUT
 variables_prune := SCENE SIZE SEEDS GATES RECORD
 variables_scenes := RECORD
 variables_sweep := AREA ROUTE RECORD
@@ -81,9 +81,9 @@ all-setup:
   waves bench export configs
 
 run: setup
-	@$(PHONG75) run $(size) $(call option,--technique,TECHNIQUE) $(config) $(call option,--fps,FPS) \
-	  $(call option,--clock,CLOCK_MHZ) $(call option,--prune,PRUNE) $(call option,--spans,SPANS) \
-	  $(call option,--out,OUT) $(call argument,SCENE)
+	@$(PHONG75) run $(size) $(call option,--technique,TECHNIQUE) $(config) $(call option,--units,UNITS) \
+	  $(call option,--fps,FPS) $(call option,--clock,CLOCK_MHZ) $(call option,--prune,PRUNE) \
+	  $(call option,--spans,SPANS) $(call option,--out,OUT) $(call argument,SCENE)
 
 prune: $(if $(filter all,$(call setting,SCENE)),hardware-setup,setup)
 	@$(PHONG75) prune $(size) $(call option,--seeds,SEEDS) $(call flag,--gates,GATES) $(record) \
@@ -181,7 +181,7 @@ help:
 	@echo 'Render and look:'
 	@echo '  make run           SCENE=teapot through RTL and model, compared; build/NAME/'
 	@echo '                     SIZE=640x480 TECHNIQUE=phong|gouraud|flat CONFIG=NAME FPS=30'
-	@echo '                     CLOCK_MHZ=200 PRUNE=1|SCENE SPANS=FILE OUT=DIR'
+	@echo '                     UNITS=1 CLOCK_MHZ=200 PRUNE=1|SCENE SPANS=FILE OUT=DIR'
 	@echo '  make prune         what SCENE needs of the pipeline; SCENE=all: what that saves'
 	@echo '                     SIZE=640x480 SEEDS=3 GATES=1'
 	@echo '  make scenes        all bundled scenes at three sizes'

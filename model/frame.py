@@ -46,7 +46,8 @@ class MaterialTable:
 
     With lights (`Config.sums_lights`) ambient is the sum of what needs no direction, e + ka Ia and
     ka La of every light; diffuse is kd Ld of the first light, and highlight: int64[M, 3] is ks Ls
-    of the first light in `coefficient`. highlight is None where it is 1 everywhere.
+    of the first light in `coefficient`. highlight is None where it is 1 everywhere and
+    ambient + diffuse is at most 1: then one light needs no more than eq. (3).
     """
 
     ambient: Ints
@@ -188,34 +189,36 @@ class Frame:
 
 
 def fitted(config: Config, frame: Frame, units: int = 1) -> Config:
-    """`config` with the lights that `frame` has: as it is for one white light and Cp <= 1.
+    """`config` with the lights that `frame` has: as it is for one light with white highlights and
+    Cp <= 1.
 
     units: shading units side by side. Raises InputError if there are more units than lights, or if
     `config` has a method or a feature that is for one light.
     """
-    table = frame.materials
-    colours = [table.highlight, *(light.highlight for light in frame.further)]
+    first = frame.materials.highlight
+    colours = [first, *(light.highlight for light in frame.further)]
     coloured = any(c is not None and (c != config.coefficient.one).any() for c in colours)
-    beyond = (table.ambient + table.diffuse > config.coefficient.one).any()
     if config.technique != "phong":
         if units > 1:
             raise InputError(f"{config.technique} shading has no units: it shades vertices")
         return config
     placed, falls = frame.half_vectors is not None, frame.falloff is not None
-    if not (coloured or beyond or frame.further or units > 1 or placed or falls):
+    sums = bool(frame.further) or placed or falls
+    if first is None and units == 1 and not sums:
         return config
+    if units > frame.lights:
+        lights = f"{frame.lights} light{'s' if frame.further else ''}"
+        raise InputError(f"{units} units for {lights}: a unit more than lights has nothing to do")
     suffix = f"_lights_{frame.lights}" + (f"_units_{units}" if units > 1 else "")
     suffix += "_placed" * placed + "_falloff" * falls
     try:
         return replace(
             config, name=config.name + suffix, lights=frame.lights, units=units,
-            highlight_colour=bool(
-                coloured or (beyond and not (frame.further or placed or falls))
-            ),
+            highlight_colour=coloured or not sums,
             span_half_vector=placed, attenuation=falls,
         )  # fmt: skip
     except ValueError as error:
-        raise InputError(f"{error}; lights of the frame: {frame.lights}") from None
+        raise InputError(f"a sum over lights is needed, but {error}") from None
 
 
 def with_lights(config: Config, frame: Frame) -> Config:

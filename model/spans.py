@@ -49,6 +49,7 @@ error shows the same error again.
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -413,6 +414,28 @@ def read_spans(path: str | Path, config: Config) -> Frame:
         return _frame(header, body, config)
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
+
+
+def written_for(path: str | Path, config: Config) -> Config:
+    """`config` with the lights, units and places of the build that the span file `path` is for.
+
+    A file that cannot be read, or that has no lights, gives `config`; `read_spans` says what is
+    wrong with it.
+    """
+    try:
+        header, _ = _split(Path(path).read_bytes())
+        lights, fields = header["lights"], header["record"]["fields"]
+        one = config.coefficient.one
+        coloured = any(c != one for light in lights for row in light["highlight"] for c in row)
+        placed, falls = "half_x" in fields, "start_depth" in fields
+        return replace(
+            config, name=f"{config.name}_lights_{len(lights)}", lights=len(lights),
+            units=sum(name.startswith("start_x") for name in fields),
+            highlight_colour=coloured or not (len(lights) > 1 or placed or falls),
+            span_half_vector=placed, attenuation=falls,
+        )  # fmt: skip
+    except (OSError, InputError, KeyError, TypeError, ValueError):
+        return config
 
 
 def _split(data: bytes) -> tuple[dict[str, Any], bytes]:

@@ -16,7 +16,7 @@ from pathlib import Path
 from rich.table import Table
 
 from phong75.model.config import DEFAULT, Config
-from phong75.model.frame import Frame
+from phong75.model.frame import Frame, with_lights
 from phong75.model.front.scene import bundled_scenes, load_scene
 from phong75.model.scene_to_frame import front_end
 from phong75.scripts import console, recorded
@@ -63,6 +63,8 @@ def main(record: bool) -> int:
     for scene in bundled_scenes():
         console.phase(scene)
         frame = front_end(load_scene(scene)).frame
+        if with_lights(DEFAULT, frame) != DEFAULT:
+            continue  # hold_unlit is for one light
         pixels, toggles = toggles_per_pixel(frame, DEFAULT, BUILD / "activity")
         held = toggles_per_pixel(frame, hold, BUILD / "activity")[1]
         found[scene] = {

@@ -94,6 +94,16 @@ def parse_grade(value: str | int) -> int:
     return int(value)
 
 
+def parse_units(value: str | int) -> int:
+    """The number of shading units in `value`, a text or the default. Raises InputError."""
+    from phong75.model.config import UNITS
+    from phong75.model.frame import InputError
+
+    if str(value) not in map(str, UNITS):
+        raise InputError(f"--units is `{value}`, not one of {', '.join(map(str, UNITS))}")
+    return int(value)
+
+
 def configuration(technique: str | None, config: str | None) -> Config:
     """The configuration that --technique or --config names, else the default one.
 
@@ -180,6 +190,15 @@ ConfigName = Annotated[
         metavar="NAME",
         help="A configuration of the pipeline; `phong75 configs` lists them.",
         autocompletion=configs,
+    ),
+]
+Units = Annotated[
+    int,
+    typer.Option(
+        "--units",
+        metavar="N",
+        help="How many lights are shaded side by side, 1, 2, 4 or 8; the others take turns.",
+        parser=parse_units,
     ),
 ]
 Fps = Annotated[

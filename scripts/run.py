@@ -21,7 +21,7 @@ import numpy as np
 from phong75.model import spans, twin
 from phong75.model.analysis import error_budget, metrics, pictures, pruning, reference, run_report
 from phong75.model.config import DEFAULT, TECHNIQUES, Config
-from phong75.model.frame import ExactFrame, Frame, InputError
+from phong75.model.frame import ExactFrame, Frame, InputError, fitted
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
 from phong75.scripts import console, options
@@ -41,7 +41,7 @@ FILES = ("frame.png", "reference.png", "error.png", "spans", "report.json")
 @dataclass(frozen=True)
 class RunRequest:
     """What to run: a scene (`size` None for its own) or, where `spans` is set, a span file,
-    with the hardware of `config`.
+    with the hardware of `config`, and the lights that it has on `units` shading units.
 
     prune: "" for the full design, "self" for what is pruned to this scene, else the name or path
     of a scene: what is pruned to that one at the same size. clock_hz in hertz; fps in frames a
@@ -56,12 +56,13 @@ class RunRequest:
     clock_hz: float
     out: Path
     prune: str = ""
+    units: int = 1
 
 
 def request(
     scene: str = "teapot", spans: Path | None = None, size: tuple[int, int] | None = None,
     config: Config = DEFAULT, fps: float = 30, clock_mhz: float = 200, prune: str = "",
-    out: Path | None = None,
+    out: Path | None = None, units: int = 1,
 ) -> RunRequest:  # fmt: skip
     """The request with its defaults: results go to build/<scene>-<configuration>."""
     suffix = "" if config == DEFAULT else f"-{config.name}"
@@ -74,12 +75,14 @@ def request(
         clock_hz=options.whole(clock_mhz * 1e6),
         out=out or Path("build", Path(spans or scene).stem + suffix),
         prune=options.prune_scene(prune),
+        units=units,
     )
 
 
 @dataclass(frozen=True)
 class Stimulus:
-    """What the front end leaves: the frame, its file, and the configuration to build for it.
+    """What the front end leaves: the frame, its file, the full configuration with the lights of the
+    frame, and the configuration to build for it.
 
     exact: the scene before any rounding; None where there is no scene behind the spans.
     """
@@ -87,6 +90,7 @@ class Stimulus:
     frame: Frame
     exact: ExactFrame | None
     degenerate_triangles: int
+    config: Config
     built: Config
     path: Path
 
@@ -109,32 +113,39 @@ def _front_end(request: RunRequest, folder: Path, steps: Steps) -> Stimulus:
     config = request.config
     with steps.step("front_end") as step:
         if request.spans:
-            frame, exact, degenerate = spans.read_spans(request.spans, config), None, 0
+            written_for = spans.written_for(request.spans, config)
+            frame, exact, degenerate = spans.read_spans(request.spans, written_for), None, 0
         else:
             scene = load_scene(request.scene, request.size, config)
             front = front_end(scene, config, step.done)
             frame, exact, degenerate = front.frame, front.exact, front.degenerate_triangles
-        built = _built(request, frame)
+        config = fitted(config, frame, request.units)
+        built = _built(request, frame, config)
         if built.values != config.values and (reasons := pruning.missing(frame, built, config)):
             raise InputError(f"its spans have no place for this scene: {reasons[0]}")
         path = folder / "spans"
         spans.write_spans(path, frame, built)
-    return Stimulus(frame, exact, degenerate, built, path)
+    return Stimulus(frame, exact, degenerate, config, built, path)
 
 
-def _built(request: RunRequest, frame: Frame) -> Config:
-    """The configuration to build for `request`, whose frame is `frame`."""
-    config = request.config
+def _built(request: RunRequest, frame: Frame, config: Config) -> Config:
+    """The configuration to build for `request`: of `config`, what is asked for.
+
+    Raises InputError if the scene to prune for has other lights than `frame`.
+    """
     if not request.prune:
         return config
     if request.prune != options.SELF:
         scene = load_scene(request.prune, (frame.width, frame.height), config)
         frame = front_end(scene, config).frame
+        if not config.sums_lights and fitted(config, frame) != config:
+            raise InputError(f"--prune {request.prune}: it has other lights than what is run")
     return pruning.prune(frame, config)[0]
 
 
-def _twin(stimulus: Stimulus, config: Config, steps: Steps) -> tuple[twin.Pixels, int]:
+def _twin(stimulus: Stimulus, steps: Steps) -> tuple[twin.Pixels, int]:
     """The model's pixels by the full design, and in how many the pruned design's model differs."""
+    config = stimulus.config
     with steps.step("model") as step:
         expected = twin.render(stimulus.frame, config, step.done)
         if stimulus.built == config:
@@ -151,9 +162,9 @@ def _simulation(stimulus: Stimulus, simulate: Simulate, steps: Steps) -> SimResu
     return result
 
 
-def _reference(stimulus: Stimulus, config: Config, steps: Steps) -> Ideal:
+def _reference(stimulus: Stimulus, steps: Steps) -> Ideal:
     """The frame in float64, and how far from it a code may be."""
-    frame, exact = stimulus.frame, stimulus.exact
+    frame, exact, config = stimulus.frame, stimulus.exact, stimulus.config
     with steps.step("reference"):
         return Ideal(
             reference.render(frame, config),
@@ -179,7 +190,7 @@ def _report(
         clock_hz=request.clock_hz,
         simulation=simulation,
         comparison=comparison,
-        zero_normals=twin.zero_normals(stimulus.frame, request.config),
+        zero_normals=twin.zero_normals(stimulus.frame, stimulus.config),
         error=metrics.error_metrics(codes, ports),
         bound_lsb=None if ideal.bound is None else float(ideal.bound),
         pruned_differ=pruned_differ,
@@ -232,29 +243,30 @@ def run(request: RunRequest, simulate: Simulate, steps: Steps) -> dict:
     another run; OSError if a file cannot be written; BuildError or SimulationError if the
     simulator does not work.
     """
-    config = request.config
     with _results(request.out) as folder:
         stimulus = _front_end(request, folder, steps)
-        expected, pruned_differ = _twin(stimulus, config, steps)
+        expected, pruned_differ = _twin(stimulus, steps)
         simulation = _simulation(stimulus, simulate, steps)
-        ideal = _reference(stimulus, config, steps)
+        ideal = _reference(stimulus, steps)
         comparison = metrics.compare(expected, simulation.pixels)
         report = _report(request, stimulus, comparison, pruned_differ, simulation, ideal, steps)
         name = f"{report['scene']}, {report['technique']}"
         _pictures(folder, name, stimulus.frame, expected, simulation, ideal, steps)
         text = json.dumps(report, indent=2, allow_nan=False) + "\n"
         (folder / "report.json").write_text(text, encoding="utf-8")
-        _explain(stimulus, comparison, config)
+        _explain(stimulus, comparison)
     return report
 
 
-def _explain(stimulus: Stimulus, comparison: metrics.Comparison, config: Config) -> None:
+def _explain(stimulus: Stimulus, comparison: metrics.Comparison) -> None:
     """Say why pixels differ: what the build leaves out, and the first place in the stream."""
+    config = stimulus.config
     for reason in pruning.missing(stimulus.frame, stimulus.built, config):
         console.note(f"left out, but needed: {reason}")
     if comparison.first:
         console.note(_where(comparison.first))
-        by_technique = config in TECHNIQUES.values()  # `locate` knows the stages of these
+        # `locate` knows the stages of these.
+        by_technique = config in TECHNIQUES.values() or config.sums_lights
         if comparison.first.expected and stimulus.built == config and by_technique:
             console.note(locate(stimulus.frame, comparison.first.index, config))
 

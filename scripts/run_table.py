@@ -30,6 +30,10 @@ def table(report: dict) -> Table:
         return "[green]ok[/]" if good else "[bold red]FAILED[/]"
 
     rows.add_row("pixels shaded", count(report["pixels"]), f"in {count(report['spans'])} spans")
+    if report["lights"] > 1:
+        cycles = report["cycles_of_lights"]
+        each = f"{cycles} cycles" if cycles > 1 else "1 cycle"
+        rows.add_row("lights", count(report["lights"]), f"{each} a pixel")
     if report["illegal_spans"]:
         rows.add_row(
             "illegal spans", count(report["illegal_spans"]), "the error bound does not cover them"

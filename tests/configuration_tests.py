@@ -24,12 +24,13 @@ from phong75.model.config import DEFAULT as C
 from phong75.model.config import TECHNIQUES, Config
 from phong75.model.frame import Frame
 from phong75.model.front.scene import load_scene
-from phong75.model.registers import writes
+from phong75.model.registers import address_bits, writes
 from phong75.model.scene_to_frame import front_end
-from phong75.model.spans import illegal_spans
+from phong75.model.spans import illegal_spans, turns
 from phong75.model.studies.methods import CONFIGS
-from phong75.model.studies.random_frames import random_frame
+from phong75.model.studies.random_frames import placed, random_frame, random_lights
 from phong75.model.twin.core.register_map import unsupported_write, vanishing_exponent
+from phong75.model.twin.lights.light_map import unsupported_light_write
 from phong75.model.twin.pruning.span_guard import span_guard
 from phong75.sim.build import Bench
 from phong75.sim.frame.run_frame import SimJob, simulate_jobs
@@ -236,18 +237,21 @@ class ConfigurationTest:
         config, frame = self.config, job.frame
         words = writes(frame, config) if job.writes is None else job.writes
         unsupported = span_guard(frame.spans, config)
-        unsupported_writes = sum(unsupported_write(*word, config) for word in words)
+        flags = unsupported_light_write if config.sums_lights else unsupported_write
+        unsupported_writes = sum(flags(*word, config) for word in words)
         counters = {
             "complete": True,
             "extra_pixels": 0,
-            "latency_cycles": latency,
             "unsupported": int(unsupported.sum()) + unsupported_writes,
         }
+        if turns(frame, config) == 1 or job.idle == 0:  # else a turn may wait for its record
+            counters["latency_cycles"] = latency + turns(frame, config) - 1
         if not unsupported.any():
             counters["illegal_spans"] = int(illegal_spans(frame, config).sum())
             counters["zero_normals"] = twin.zero_normals(frame, config)
         if job.stall == job.idle == 0:
-            counters["cycles"] = int(frame.spans["length"].sum()) + latency - 1
+            pixels = int(frame.spans["length"].sum())
+            counters["cycles"] = pixels * turns(frame, config) + latency - 1
         # Other register writes than the frame's give other materials than the twin's.
         compared = not (job.writes or unsupported_writes)
         return counters, unsupported, twin.render(frame, self.full) if compared else None
@@ -262,7 +266,7 @@ class ConfigurationTest:
             frame = self.jobs[k].frame
             if pixels is not None and self.full != self.config:
                 rows = np.flatnonzero(np.repeat(~unsupported, frame.spans["length"]))
-                supported = dataclasses.replace(frame, spans=frame.spans[~unsupported])
+                supported = frame.take(~unsupported)
                 compared = metrics.compare(_rows(pixels, rows), twin.render(supported, self.config))
                 if compared.mismatches:
                     return f"job {k}, model: {compared.first}"
@@ -417,6 +421,143 @@ def _intensities(technique: str, channels: int) -> ConfigurationTest:
 SCENES = (("model/data/highlights.toml", (72, 24)), ("model/data/facets.toml", (96, 16)))
 
 
+# -- several lights --------------------------------------------------------------------------------
+
+
+def unrelated(frame: Frame, seed: int) -> None:
+    """Give every third span normals that are not one vector in several frames: some longer, some
+    shorter than that of the first light, which is the zero vector in some spans."""
+    rng = np.random.default_rng(seed)
+    for light in frame.further:
+        for name in ("start", "step"):
+            codes = rng.integers(-(1 << 30), 1 << 30, (len(frame.spans), 3))
+            codes >>= rng.integers(0, 31, len(frame.spans))[:, None]
+            getattr(light, name)[::3] = codes[::3] >> (4 if name == "step" else 0)
+    frame.spans["start"][::9] = frame.spans["step"][::9] = 0
+
+
+def overflowing(frame: Frame) -> None:
+    """Let a component of one light leave its format in some spans."""
+    for number, light in enumerate(frame.further):
+        light.step[number::40, number % 3] = C.normal.max
+    frame.spans["step"][20::50, 1] = C.normal.min
+
+
+def several(lights: int, units: int, coloured: bool = True, **features) -> Config:
+    """A build for several lights."""
+    name = f"lights_{lights}_units_{units}{'_coloured' if coloured else ''}"
+    return Config(
+        name=name, lights=lights, units=units, highlight_colour=coloured, **features
+    )  # fmt: skip
+
+
+def _lights(lights: int, units: int, coloured: bool) -> ConfigurationTest:
+    """Frames of all numbers of lights that the build has, from most to fewest."""
+    config = several(lights, units, coloured)
+    jobs = []
+    for count in range(lights, 0, -1):
+        seed = [SEED, lights, count]
+        frame = random_lights(seed, 60 if count < lights else 200, 7, count, count % 2 == 0,
+                              coloured)  # fmt: skip
+        if count == lights:
+            most = frame
+            pixel = random_lights(seed, 200, 1, count, coloured=coloured)
+            odd = random_lights([*seed, 1], 200, 7, count, True, coloured)
+            unrelated(odd, SEED)
+            wild = random_lights([*seed, 2], 200, 7, count, coloured=coloured)
+            overflowing(wild)
+            jobs += [SimJob(pixel), SimJob(odd), SimJob(wild), SimJob(wild, idle=90, stall=90)]
+        jobs += [SimJob(frame), SimJob(frame, idle=100, stall=64, seed=SEED + count)]
+    jobs += [
+        SimJob(most, stop_after=clocks, stall=stall) for clocks, stall in ((90, 255), (301, 0))
+    ]
+    jobs += [SimJob(most, reset_first=True, idle=200), SimJob(most, stall=200)]
+    jobs.append(SimJob(most, writes=_odd_light_writes(most, config)))
+    return ConfigurationTest(config, *jobs)
+
+
+def _odd_light_writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
+    """Register writes: random words to every address, then those of `frame`."""
+    rng = np.random.default_rng(SEED)
+    one = C.coefficient.one
+    values = [0, 1, one, one - 1, one + 1, C.exponent.one, *range(16)]
+    random_writes = []
+    for address in rng.permutation(1 << address_bits(config)).tolist():
+        word = rng.choice(values) if rng.random() < 0.8 else rng.integers(1 << 33)
+        random_writes.append((address, int(word)))
+    return random_writes + writes(frame, config)
+
+
+def _lights_without(**left_out) -> ConfigurationTest:
+    """Three lights on two units, without some features, and a frame that needs all of them."""
+    config = several(3, 2, left_out.pop("coloured", True), **left_out)
+    frame = random_lights(SEED, 200, 7, 3, config.two_sided, config.highlight_colour)
+    needs = random_lights(SEED + 1, 60, 7, 3, True)
+    for feature, change in (
+        ("specular", dull), ("power_function", cosine_only), ("weight_function", even_weight),
+        ("diffuse", no_diffuse), ("ambient", no_ambient),
+    ):  # fmt: skip
+        if not getattr(config, feature):
+            change(frame, np.random.default_rng(SEED))
+    if not config.diffuse:
+        for light in frame.further:
+            light.diffuse[:] = 0
+    if config.channels == 1:
+        table = frame.materials
+        for colours in (table.ambient, table.diffuse, table.highlight,
+                        *(c for v in frame.further for c in (v.diffuse, v.highlight))):  # fmt: skip
+            colours[:] = colours[:, :1]
+    if config.idle_x_bits:
+        frame.spans["x"] %= 240
+        frame.spans["y"] &= 511
+        frame.spans["material"] &= 7
+    stray = frame.take(np.arange(len(frame.spans)))
+    rng = np.random.default_rng(SEED)
+    for word in ("material", "x", "y"):
+        rows = rng.random(len(stray.spans)) < 1 / 4
+        stray.spans[word][rows] = needs.spans[word][rng.integers(0, 60, rows.sum())]
+    return ConfigurationTest(
+        config, SimJob(frame), SimJob(frame, idle=100, stall=64, seed=SEED),
+        SimJob(stray), SimJob(frame, writes=_odd_light_writes(needs, config)),
+    )  # fmt: skip
+
+
+def _places(
+    lights: int, units: int, half_vectors: bool, falls: bool, coloured: bool, **left_out
+) -> ConfigurationTest:
+    """Frames in which spans bring half vectors, or distances, on a build for them."""
+    config = several(
+        lights, units, coloured, span_half_vector=half_vectors, attenuation=falls, **left_out
+    )
+
+    def frame(spans: int, longest: int, count: int, two_sided: bool = False) -> Frame:
+        seed = [SEED, spans, longest, count]
+        made = random_lights(seed, spans, longest, count, two_sided, coloured)
+        if not config.specular:
+            dull(made, np.random.default_rng(SEED))
+        return placed(made, seed, half_vectors, falls)
+
+    most, pixel = frame(200, 7, lights, True), frame(200, 1, lights)
+    wild = frame(120, 9, lights)
+    if falls:
+        wild.depths[:, ::7, 1] = C.depth.max
+    jobs = [
+        SimJob(most), SimJob(most, idle=100, stall=64, seed=SEED), SimJob(pixel), SimJob(wild),
+        SimJob(most, stop_after=170, stall=100), SimJob(pixel, reset_first=True, idle=90),
+    ]  # fmt: skip
+    if lights > 1:
+        jobs.append(SimJob(frame(60, 9, 1), stall=50))
+    jobs.append(SimJob(most, writes=_odd_light_writes(most, config)))
+    return ConfigurationTest(config, *jobs)
+
+
+#: {name: (lights, units, whether highlights have colours)}.
+LIGHTS = {
+    "lights 3": (3, 1, False), "lights 8 coloured": (8, 1, True), "lights 5 on 2": (5, 2, True),
+    "lights 7 on 4": (7, 4, False), "lights 8 on 8": (8, 8, True), "light coloured": (1, 1, True),
+}  # fmt: skip
+
+
 def in_words_of(config: Config, frame: Frame) -> Frame:
     """`frame`, whose codes are in the default formats, in the narrower formats of `config`."""
     drop = C.normal.fraction - config.normal.fraction
@@ -451,6 +592,21 @@ CONFIGURATION_TESTS: dict[str, Callable[[], ConfigurationTest]] = {
     **{name: functools.partial(_alone, name) for name in ALONE},
     "hold_unlit": _hold,
     "narrow": lambda: _of(*narrow()),
+    **{name: functools.partial(_lights, *what) for name, what in LIGHTS.items()},
+    "placed light": lambda: _places(1, 1, True, False, False),
+    "placed lights 3": lambda: _places(3, 1, True, True, True),
+    "placed lights 5 on 2": lambda: _places(5, 2, True, True, False),
+    "falling light": lambda: _places(1, 1, False, True, False),
+    "falling light coloured": lambda: _places(1, 1, False, True, True),
+    "falling light matte": lambda: _places(1, 1, True, True, False, specular=False),
+    "lights matte": lambda: _lights_without(specular=False, two_sided=False),
+    "lights cosine": lambda: _lights_without(
+        power_function=False, power_bypass=False, log_octaves=False, ambient=False
+    ),
+    "lights glow": lambda: _lights_without(diffuse=False, weight_function=False, coloured=False),
+    "lights grey": lambda: _lights_without(
+        channels=1, idle_x_bits=4, idle_y_bits=3, idle_material_bits=1
+    ),
     "single": lambda: _single(),
     "single grey": lambda: _single(grey),
     "single matte": lambda: _single(dull, one_sided),

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from phong75.model.arrays import Flags, Ints, Spans
-from phong75.model.config import DEFAULT, TECHNIQUES, Config
-from phong75.model.frame import Frame
+from phong75.model.config import DEFAULT, TECHNIQUES, UNITS, Config
+from phong75.model.frame import Frame, with_lights
 from phong75.model.twin.core.normalizer import leading_zeros
 from phong75.model.twin.core.phong_unit import interpolate
 from phong75.model.twin.core.register_map import vanishing_exponent
@@ -42,7 +42,8 @@ class Facts:
     materials: int64[m], the rows of the material table that spans name; of those rows: ambient,
     diffuse: int64[m, 3]; weight: int64[m, P]; exponent: int64[m]. two_sided: of the frame. shifts:
     the different shifts of the block normalization, int64, sorted. steps: int64[n, 3], of the spans
-    of more than one pixel.
+    of more than one pixel. further_diffuse: int64[m, 3] of each further light; highlights:
+    int64[m, 3] of each light.
     """
 
     materials: Ints
@@ -53,6 +54,8 @@ class Facts:
     two_sided: bool
     shifts: Ints
     steps: Ints
+    further_diffuse: list[Ints] = field(default_factory=list)
+    highlights: list[Ints] = field(default_factory=list)
 
     @property
     def shiny(self) -> Flags:
@@ -68,6 +71,8 @@ def facts(frame: Frame, config: Config) -> Facts:
     return Facts(
         used, table.ambient[used], table.diffuse[used], table.weight[used], table.exponent[used],
         bool(frame.two_sided), _shifts(spans, config), spans["step"][spans["length"] > 1],
+        [light.diffuse[used] for light in frame.further],
+        [frame.light(number, config).highlight[used] for number in range(frame.lights)],
     )  # fmt: skip
 
 
@@ -120,8 +125,11 @@ def missing(frame: Frame, built: Config, config: Config = DEFAULT) -> list[str]:
 def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[FeatureRow]]:
     """The configuration without all that `frame` does not need, and the reason for each feature.
 
-    A feature that `config` leaves out stays out. The name is that of `config` and `-pruned`.
+    A feature that `config` leaves out stays out. The name is that of `config` and `-pruned`. A
+    `config` for one white light gets the lights of the frame first. With lights, constants and
+    steps stay in: each light has its own.
     """
+    config = with_lights(config, frame)
     if config.technique != "phong":
         return _prune_intensities(frame, config)
     if config.spans_carry_squares:  # span_guard does not read such spans
@@ -129,8 +137,11 @@ def prune(frame: Frame, config: Config = DEFAULT) -> tuple[Config, list[FeatureR
         return config, [FeatureRow(feature, True, why, "") for feature in FEATURES]
     pruner = _Pruner(frame, config)
     pruner.terms()
-    pruner.constants()
-    pruner.normals()
+    if config.sums_lights:
+        pruner.lights()
+    else:
+        pruner.constants()
+        pruner.normals()
     pruner.widths()
     return dataclasses.replace(config, name=f"{config.name}-pruned", **pruner.chosen), pruner.rows
 
@@ -143,6 +154,7 @@ class _Pruner:
 
     def __init__(self, frame: Frame, config: Config) -> None:
         self.config, self.spans, self.half_vector = config, frame.spans, frame.half_vector
+        self.frame = frame
         self.facts = facts(frame, config)
         self.rows: list[FeatureRow] = []
         self.chosen: dict[str, Any] = {}
@@ -202,7 +214,7 @@ class _Pruner:
             "weight_function", varies.any(), _some(int(varies.sum()), count, "W depends on i"),
             "table of W(i) and its product",
         )  # fmt: skip
-        lit = f.diffuse.any(axis=1)
+        lit = np.any([d.any(axis=1) for d in (f.diffuse, *f.further_diffuse)], axis=0)
         self.decide(
             "diffuse", lit.any(), _some(int(lit.sum()), count, "Cp (1 - d) is other than 0"),
             "product with cos(i) in each channel",
@@ -212,8 +224,9 @@ class _Pruner:
             "ambient", dark.any(), _some(int(dark.sum()), count, "Cp d is other than 0"),
             "table and sum of Cp d in each channel",
         )  # fmt: skip
-        coloured = (f.ambient != f.ambient[:, :1]).any(axis=1)
-        coloured |= (f.diffuse != f.diffuse[:, :1]).any(axis=1)
+        coloured = np.zeros(count, bool)
+        for colour in (f.ambient, f.diffuse, *f.further_diffuse, *f.highlights):
+            coloured |= (colour != colour[:, :1]).any(axis=1)
         self.decide(
             "channels", coloured.any(),
             _some(int(coloured.sum()), count, "red, green and blue differ"),
@@ -221,6 +234,23 @@ class _Pruner:
         )  # fmt: skip
         sides = "two" if f.two_sided else "one"
         self.decide("two_sided", f.two_sided, f"the frame is {sides}-sided", "turning of Zn")
+
+    def lights(self) -> None:
+        """How many lights, and whether their highlights have colours."""
+        config, count = self.config, self.frame.lights
+        # One light with a sum beyond 1 needs the wide sum of a build for several.
+        least = count if count > 1 or config.highlight_colour else 2
+        self.decide(
+            "lights", least == config.lights, f"{count} light{'s' if count > 1 else ''}",
+            "contexts of the interpolators, entries of the tables", without=least,
+        )  # fmt: skip
+        if self.chosen.get("lights", config.lights) < config.units:
+            self.chosen["units"] = max(u for u in UNITS if u <= least)
+        self.decide(
+            "highlight_colour", config.highlight_colour == self.specular,
+            "no highlight" if not self.specular else "decides the rounding of the highlight",
+            "product with ks Ls in each channel",
+        )  # fmt: skip
 
     def constants(self) -> None:
         """Values that are the same in the whole frame."""
@@ -274,11 +304,12 @@ class _Pruner:
         """Top bits of words that are the same in the whole frame."""
         config, f, spans = self.config, self.facts, self.spans
         steepest = int(np.max(np.where(f.steps < 0, ~f.steps, f.steps), initial=0))
-        self._narrow(
-            "idle_step_bits", _idle(steepest, config.normal.bits - 1),
-            f"steps take {steepest.bit_length() + 1} of {config.normal.bits} bits",
-            "top bits of the steps",
-        )  # fmt: skip
+        if not config.sums_lights:
+            self._narrow(
+                "idle_step_bits", _idle(steepest, config.normal.bits - 1),
+                f"steps take {steepest.bit_length() + 1} of {config.normal.bits} bits",
+                "top bits of the steps",
+            )  # fmt: skip
         right = max(spans["x"] + spans["length"], default=1) - 1
         for feature, largest, bits, word in (
             ("idle_material_bits", max(f.materials, default=0), config.material_bits, "material"),

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 from phong75.model.analysis.metrics import Comparison
 from phong75.model.config import Config
 from phong75.model.frame import Frame
+from phong75.model.spans import turns
 from phong75.model.twin import Pixels
 
 #: Version of the layout of `report.json`.
@@ -66,6 +67,8 @@ def make_report(
         "size": [frame.width, frame.height],
         "pixels": pixels,
         "spans": len(frame.spans),
+        "lights": frame.lights,
+        "cycles_of_lights": turns(frame, config),
         "illegal_spans": simulation.illegal_spans,
         "unsupported": simulation.unsupported,
         "zero_normals": simulation.zero_normals,

@@ -425,7 +425,7 @@ def _colours(
     scene: Scene, light: Light, table: MaterialTable, config: Config
 ) -> tuple[Reals, Reals]:
     """Set `diffuse` and `highlight` of `table` to kd Ld and ks Ls of `light`; returns both before
-    rounding, float64[M, 3] each. A `highlight` of 1 everywhere stays None.
+    rounding, float64[M, 3] each. `highlight` stays None where `MaterialTable` says so.
 
     By the paper's rule Cp d and Cp (1 - d) are rounded so that their sum is Cp in codes. Raises
     InputError if a product does not fit its word.
@@ -443,7 +443,8 @@ def _colours(
             table.diffuse[i] -= config.coefficient.quantize(cp * material.d)
         else:
             table.diffuse[i] = _coefficients(diffuse[i], f"diffuse light {what}", scene, config)
-    if (codes != config.coefficient.one).any():
+    one = config.coefficient.one
+    if (codes != one).any() or (table.ambient + table.diffuse > one).any():
         table.highlight = codes
     return diffuse, highlight
 

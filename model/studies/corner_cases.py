@@ -18,15 +18,21 @@ import numpy as np
 from phong75.model.analysis import reference
 from phong75.model.arrays import ArrayLike, Flags, Ints, Reals, Spans
 from phong75.model.config import DEFAULT as C
-from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
+from phong75.model.frame import (
+    SPAN_DTYPE,
+    Frame,
+    FurtherLight,
+    MaterialTable,
+    half_vector_codes,
+)
 from phong75.model.front import visibility
-from phong75.model.front.camera import Camera
+from phong75.model.front.camera import Camera, light_frame
 from phong75.model.front.mesh import Mesh, normalize
 from phong75.model.front.scene import Material, Scene, SceneObject
 from phong75.model.front.scene_to_spans import encode
 from phong75.model.front.visibility import GRID
 from phong75.model.scene_to_frame import front_end
-from phong75.model.twin import Pixels
+from phong75.model.twin import Pixels, render
 
 #: Specular exponents of the materials in the cases.
 EXPONENTS = (1, 1.5, 2, 10, 64, 127, 128)
@@ -568,9 +574,158 @@ def _t_junctions(rng: np.random.Generator) -> CornerCase:
     )  # fmt: skip
 
 
+# -- several lights --------------------------------------------------------------------------------
+
+
+def _lit_from(
+    directions: Reals, colours: Reals, frame: Frame, first: Reals, last: Reals
+) -> Frame:  # fmt: skip
+    """`frame` with the first light along z and further ones in `directions`, float64[L, 3], in the
+    first light's frame.
+
+    colours: float64[L + 1, 3], of the diffuse and specular light of each. first, last:
+    float64[n, 3], the normals at the ends of the spans, of which `frame` is made.
+    """
+    table = frame.materials
+    base = table.diffuse
+    hx, hz = C.half_vector.real(frame.half_vector)
+    eye = np.array([2 * hx * hz, 0.0, hz * hz - hx * hx])
+    length = frame.spans["length"]
+    step = (last - first) / np.maximum(length - 1, 1)[:, None]
+
+    def coloured(colour: Reals) -> tuple[Ints, Ints]:
+        products = np.round(base * colour).astype(np.int64)
+        return products, np.tile(C.coefficient.quantize(colour), (len(base), 1))
+
+    further = []
+    for direction, colour in zip(directions, colours[1:], strict=True):
+        axes, its_eye = light_frame(direction, eye)
+        codes = encode(first @ axes.T, step @ axes.T, length, C)
+        half_vector = half_vector_codes(its_eye, C)
+        further.append(FurtherLight(half_vector, *codes, *coloured(colour)))
+    diffuse, highlight = coloured(colours[0])
+    table = replace(table, diffuse=diffuse, highlight=highlight)
+    return replace(frame, materials=table, further=further)
+
+
+def unlit_stays_ambient(frame: Frame, got: Pixels) -> list[str]:
+    """Check that every pixel that no light reaches has exactly the rounded ambient part."""
+    dark = np.ones(len(got), bool)
+    for number in range(frame.lights):
+        z = _normals(frame.seen_by(frame.light(number, C)))[:, 2]
+        dark &= z == 0 if frame.two_sided else z <= 0
+    dark |= (_normals(frame) == 0).all(axis=1)
+    ambient = frame.materials.ambient[_material(frame)[dark]]
+    white = (1 << C.colour_bits) - 1
+    want = (np.minimum(ambient, C.coefficient.one) * white + C.coefficient.one // 2) >> (
+        C.coefficient.fraction
+    )
+    wrong = int((got.rgb[dark] != want).any(axis=1).sum())
+    return [f"{wrong} of {int(dark.sum())} unlit pixels are not ambient"] if wrong else []
+
+
+def _lights() -> Iterator[CornerCase]:
+    rng = np.random.default_rng(8)
+    towards = np.array([0.0, 0.0, 1.0])
+    first, last = _directions(rng, 112), _directions(rng, 112)
+
+    def case(name: str, extreme: str, expected: str, directions: Reals, colours: Reals,
+             ends: tuple[Reals, Reals] = (first, last), length: int = 17,
+             check: Callable[[Frame, Pixels], list[str]] = unlit_stays_ambient,
+             materials: MaterialTable | None = None, two_sided: bool = False,
+             full_rate: bool = False) -> CornerCase:  # fmt: skip
+        rows = np.arange(len(ends[0])) % (2 * len(EXPONENTS))
+        spans = _between(*ends, length, rows if materials is None else 0)
+        frame = _frame(spans, materials, two_sided=two_sided)
+        frame = _lit_from(np.asarray(directions), np.asarray(colours, float), frame, *ends)
+        return CornerCase(name, extreme, expected, frame, check, full_rate)
+
+    yield case(
+        "eight lights on one spot",
+        "eight lights in one direction, each of half of white: sums up to 4 times white",
+        "saturation to white, within the bound of eight lights",
+        np.tile(towards, (7, 1)), np.full((8, 3), 0.49),
+        ends=(np.abs(first), np.abs(last)),
+        check=lambda f, p: unlit_stays_ambient(f, p)
+        + ([] if (p.rgb == 255).any(axis=1).mean() > 0.2 else ["hardly any pixel saturates"]),
+    )  # fmt: skip
+    pairs = _directions(rng, 3)
+    directions = np.concatenate([[-towards], *np.stack([pairs, -pairs], axis=1)])
+    pair_colours = np.tile([[0.3, 0.05, 0.1], [0.05, 0.1, 0.3]], (4, 1))
+    yield case(
+        "opposite pairs of lights",
+        "four pairs of lights from opposite sides, each in two colours",
+        "each pixel is lit by one light of each pair", directions, pair_colours,
+    )  # fmt: skip
+    yield case(
+        "opposite pairs, two-sided",
+        "the same, |N.L| of each light is shaded",
+        "each pixel is lit by all lights", directions, pair_colours, two_sided=True,
+    )  # fmt: skip
+    flat = np.array([[0.0, 0.0, 1.0]] * 56)
+    azimuth = np.linspace(0, 2 * np.pi, 8)[:7]
+    grazing = np.stack([np.cos(azimuth), np.sin(azimuth), 0 * azimuth], axis=1)
+    tilted = normalize(flat + np.array([2.0**-16, 2.0**-17, 0]))
+    yield case(
+        "grazing lights",
+        "seven lights in the plane of the facet to 2⁻³⁰, the normal turns by 2⁻¹⁶ towards them",
+        "each light adds N.L and W(i) as the sign of its own N.L says",
+        grazing, np.full((8, 3), 0.4), ends=(flat, tilted), length=65,
+    )  # fmt: skip
+    behind = np.concatenate([[-towards], grazing[:3]])
+    yield case(
+        "one light exactly behind",
+        "a facet towards the first light, with one light behind it and three in its plane",
+        "the others add nothing",
+        behind, np.full((5, 3), 0.6), ends=(flat, flat), length=5,
+        check=lambda f, p: unlit_stays_ambient(f, p) + _same_without(f, p),
+    )  # fmt: skip
+    sharp = _materials(((0, 0, 0), 0, 1, 128))
+    spread = _directions(rng, 7)
+    spread[:, 2] = np.abs(spread[:, 2])
+    yield case(
+        "eight lights, n = 128",
+        "highlights of n = 128 and W = 1 of eight lights, each of another colour",
+        "within the bound: it grows by each light's colour",
+        spread, 0.85 * rng.random((8, 3)), materials=sharp, length=129,
+    )  # fmt: skip
+    short = 2.0**-20
+    yield case(
+        "lights on normals of 2⁻²⁰",
+        "ends of length 2⁻²⁰: 1024 LSB, rounded for each light",
+        "within a bound that follows from the lengths at the ports",
+        spread, rng.random((8, 3)) / 4, ends=(short * first, short * last),
+    )  # fmt: skip
+    opposed = rng.integers(-(1 << 22), 1 << 22, (112, 3)) / C.normal.one * 8
+    for count in (2, 5, 8):
+        yield case(
+            f"zero vector under {count} lights",
+            "normals that cancel in the middle of a span, rounded for each light",
+            "ambient where the first light's normal is zero",
+            spread[: count - 1], rng.random((count, 3)) / 4,
+            ends=(opposed, -opposed), length=17, check=unlit_stays_ambient,
+        )  # fmt: skip
+    single = _directions(rng, 2048)
+    yield case(
+        "2048 spans of one pixel, eight lights",
+        "every pixel loads all its lights, without an idle cycle between",
+        "one pixel in eight cycles",
+        spread, rng.random((8, 3)) / 4, ends=(single, single), length=1, full_rate=True,
+    )  # fmt: skip
+
+
+def _same_without(frame: Frame, got: Pixels) -> list[str]:
+    """Check that the further lights of `frame` change no pixel."""
+    alone = render(replace(frame, further=[]))
+    wrong = int((alone.rgb != got.rgb).any(axis=1).sum())
+    return [f"{wrong} pixels show lights that do not reach them"] if wrong else []
+
+
 def cases() -> list[CornerCase]:
     """All cases, in the order of the table. Every call returns the same integers."""
-    makers = (_ends_apart, _lengths, _spans, _light, _terminator, _coefficients, _triangles)
+    makers = (
+        _ends_apart, _lengths, _spans, _light, _terminator, _coefficients, _triangles, _lights,
+    )  # fmt: skip
     return [case for maker in makers for case in maker()]
 
 
@@ -691,9 +846,9 @@ def errors(frame: Frame, rgb: Ints, progress: Callable[[float], None] | None = N
     total = int(ends[-1]) if len(ends) else 0
     cuts = np.searchsorted(ends, np.arange(BLOCK, total, BLOCK))
     parts, done = [], 0
-    for part in np.split(frame.spans, cuts):
-        if len(part):
-            exact = reference.render(replace(frame, spans=part))
+    for rows in np.split(np.arange(len(frame.spans)), cuts):
+        if len(rows):
+            exact = reference.render(frame.take(rows))
             parts.append(np.abs(rgb[done : done + len(exact)] - exact).max(axis=1))
             done += len(exact)
             if progress:

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from phong75.model.arrays import Ints
 from phong75.model.config import DEFAULT as C
 from phong75.model.config import Config
-from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable
+from phong75.model.frame import SPAN_DTYPE, Frame, FurtherLight, MaterialTable
 
 
 def random_frame(
@@ -42,3 +43,62 @@ def random_frame(
     angle = rng.random() * 1.5
     hx, hz = C.half_vector.quantize([np.sin(angle), np.cos(angle)])
     return Frame(C.max_size, C.max_size, (int(hx), int(hz)), two_sided, (0, 0, 0), table, s)
+
+
+def placed(frame: Frame, seed: int | list[int], half_vectors: bool, falls: bool) -> Frame:
+    """`frame` with random half vectors of each light in each span, and with random distances and
+    factors of them, in place.
+
+    Some distances start below 0, which counts as 0, or at the ends of the word.
+    """
+    rng, spans = np.random.default_rng(seed), frame.spans
+    lights, count = frame.lights, len(spans)
+    if half_vectors:
+        angle = rng.uniform(0, np.pi / 2, (lights, count))
+        h = C.half_vector.quantize(np.stack([np.sin(angle), np.cos(angle)], axis=-1))
+        frame.half_vectors = h
+    if falls:
+        fmt, steps = C.depth, np.maximum(spans["length"].astype(np.int64) - 1, 1)
+        first, last = rng.integers(0, fmt.max + 1, (2, lights, count))
+        first[:, ::9] >>= 12
+        last[:, 1::9] = fmt.max
+        first[:, 2::9] = -rng.integers(0, 1 << 24, first[:, 2::9].shape)
+        frame.depths = np.stack([first, (last - first) // steps], axis=-1)
+        frame.falloff = rng.integers(0, C.coefficient.one + 1, (lights, C.weight_points))
+        frame.falloff[0, :2] = C.coefficient.one
+    return frame
+
+
+def random_lights(
+    seed: int | list[int], spans: int, longest: int, lights: int, two_sided: bool = False,
+    coloured: bool = True,
+) -> Frame:  # fmt: skip
+    """A `random_frame` with several `lights` in random directions.
+
+    coloured: whether the highlights have colours, some of them brighter than 1; else all are white.
+    The normals are at most sqrt(3) long, so that no light sees a component beyond the format.
+    """
+    rng = np.random.default_rng(seed)
+    frame = random_frame(seed, spans, longest, two_sided)
+    frame.spans["start"] >>= 1
+    frame.spans["step"] >>= 1
+    one, table = C.coefficient.one, frame.materials
+
+    def colours(most: int) -> Ints:
+        return rng.integers(0, most + 1, table.diffuse.shape)
+
+    table.ambient = colours(C.coefficient.max // 4)
+    table.highlight = colours(C.coefficient.max) if coloured else None
+    for _ in range(lights - 1):
+        turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+        start, step = (
+            np.floor(frame.spans[name] @ turn.T + 0.5).astype(np.int64)
+            for name in ("start", "step")
+        )
+        angle = rng.random() * 1.5
+        hx, hz = C.half_vector.quantize([np.sin(angle), np.cos(angle)]).tolist()
+        highlight = colours(one // 2) if coloured else np.full_like(table.diffuse, one)
+        frame.further.append(
+            FurtherLight((hx, hz), start, step, colours(C.coefficient.max // lights), highlight)
+        )
+    return frame

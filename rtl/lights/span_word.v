@@ -8,8 +8,8 @@
 `include "phong_config.vh"
 
 module span_word #(
-    parameter BITS      = 1,                // width of the word
-    parameter TURNS     = `PHONG_TURNS,     // of the lights of a pixel
+    parameter BITS      = 2 * `PHONG_HALF_VECTOR_BITS,  // width of the word
+    parameter TURNS     = `PHONG_TURNS,                 // of the lights of a pixel
     parameter TURN_BITS = `PHONG_TURN_BITS
 ) (
     input wire clk,

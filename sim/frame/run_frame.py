@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from phong75.model.config import DEFAULT, Config
-from phong75.model.frame import Frame
+from phong75.model.frame import Frame, with_lights
 from phong75.model.registers import writes
 from phong75.model.spans import turns, write_spans
 from phong75.model.twin import Pixels
@@ -36,7 +36,8 @@ class SimResult:
     complete: whether all expected pixels were taken.
     cycles: clock cycles from the first accepted span to the last pixel taken.
     latency_cycles: clock cycles from the first accepted span to the first pixel offered.
-    stall_cycles: cycles after the first pixel in which no pixel was taken.
+    stall_cycles: cycles after the first pixel in which no pixel was taken, beyond those that the
+        turns of each pixel's lights take.
     illegal_spans, zero_normals: how often the pipeline raised these flags.
     extra_pixels: number of pixels after the last expected one.
     build_s, simulate_s: wall-clock time, seconds.
@@ -103,13 +104,32 @@ def simulate_jobs(
     waves: Path | None = None, power_up: int | None = None,
     progress: Callable[[str], None] = silent,
 ):  # fmt: skip
-    """Simulate `jobs` one after the other in one process. Returns a list of SimResult.
+    """Simulate `jobs` one after the other. Returns a list of SimResult.
 
-    bench: the testbench, by default frame_bench in `config`. waves: VCD file to write; `bench` must
-    be built with a trace. power_up: seed of random register contents at power-up, None for zeros.
-    progress: called with what a phase does, before it. Raises BuildError, SimulationError.
+    bench: the testbench, by default frame_bench in `config`, with the lights of each job's frame
+    (see `with_lights`): a process for each configuration. waves: VCD file to write; `bench` must be
+    built with a trace. power_up: seed of random register contents at power-up, None for zeros.
+    progress: called with what a phase does, before it. Raises BuildError, SimulationError,
+    InputError.
     """
-    bench = bench or Bench("frame_bench", config)
+    if bench:
+        return _simulate(jobs, config, bench, waves, power_up, progress)
+    groups: dict[Config, list[int]] = {}
+    for k, job in enumerate(jobs):
+        groups.setdefault(with_lights(config, job.frame), []).append(k)
+    results = {}
+    for built, members in groups.items():
+        some = [jobs[k] for k in members]
+        done = _simulate(some, built, Bench("frame_bench", built), waves, power_up, progress)
+        results |= dict(zip(members, done, strict=True))
+    return [results[k] for k in range(len(jobs))]
+
+
+def _simulate(
+    jobs: list[SimJob], config: Config, bench: Bench, waves: Path | None, power_up: int | None,
+    progress: Callable[[str], None],
+) -> list[SimResult]:  # fmt: skip
+    """Simulate `jobs` in one process, in `bench`, which is built for `config`."""
     begin = time.perf_counter()
     bench.make(progress)
     build_s = time.perf_counter() - begin
@@ -148,10 +168,12 @@ def simulate_jobs(
             raise SimulationError(f"the simulation failed ({error}):\n{tail}") from error
         results = []
         for k, c in enumerate(counters):
+            pixels = read_pixels(folder / f"{k}.pixels", config)
+            waits = (turns(jobs[k].frame, config) - 1) * max(len(pixels) - 1, 0)
             results.append(
                 SimResult(
-                    read_pixels(folder / f"{k}.pixels", config), bool(c["complete"]), c["cycles"],
-                    c["latency"], c["stall_cycles"], c["illegal_spans"],
+                    pixels, bool(c["complete"]), c["cycles"],
+                    c["latency"], c["stall_cycles"] - waits, c["illegal_spans"],
                     c.get("extra_pixels", 0), build_s, c["seconds"], c["zero_normals"],
                     c["unsupported"],
                 )

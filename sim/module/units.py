@@ -81,12 +81,130 @@ _TABLE_PORTS = (
     ("write_address", "`PHONG_MATERIAL_BITS + `PHONG_WEIGHT_INDEX_BITS"),
     ("write_word", "2 * `PHONG_COEFFICIENT_BITS + 1"),
 )
+#: x, y, z of a word {z, y, x} of mantissas.
+_MANTISSAS = tuple(
+    f"+mantissas[{c} * `PHONG_MANTISSA_BITS +: `PHONG_MANTISSA_BITS]" for c in range(3)
+)
 _LOG_VALUE = _sum(ZEROS, SHIFT, ROM)
 _LOG = L.format("LOG")
 _X = _sum(_LOG, MUL, 3)
 _LINE = _sum(_X, ROM, L.format("NARROW_MULTIPLIER"), 1)
 
+_SCALE_AT = _sum(
+    L.format("LIGHT_NORMAL"), L.format("LIGHT_COLOUR"), "-" + L.format("LIGHT_ATTENUATION")
+)
+
 MODULES = {
+    "context_interpolator": Module(
+        ("single", "advance", "load", "valid", "turn", "next_turn", "start", "step"),
+        (Stage("context_interpolator", ("+value", "overflow"), "1"),),
+    ),
+    "light_align": Module(
+        ("x", "y", "z", "first_shift", "first_zero"),
+        (
+            Stage("light_align.leading_zeros", ("own_shift",), _sum(1, ZEROS)),
+            Stage("light_align.shift", ("shift_p5", "less_p5"), _sum(1, ZEROS, 2)),
+            Stage("light_align.align", _MANTISSAS, L.format("LIGHT_ALIGN")),
+            Stage("light_align.lit", ("lit",), L.format("LIGHT_ALIGN")),
+        ),
+        held=(("two_sided", 1), ("valid", 1)),
+        late={"first_shift": _sum(1, ZEROS, 1), "first_zero": _sum(1, ZEROS, 1)},
+    ),
+    "held_root": Module(
+        ("first", "mantissas"),
+        (
+            Stage("held_root.sum_of_squares", ("sum_p4",), _sum(MUL, 2)),
+            Stage("held_root.root_operand", ("operand_p5", "below_one_p5"), _sum(MUL, 3)),
+            Stage("held_root.hold", ("root", "below_one"), L.format("HELD_ROOT")),
+        ),
+    ),
+    "light_scale": Module(
+        ("mantissas", "less", "root", "below_one"),
+        (
+            Stage(
+                "light_scale.scale", _components("gen_scale.shifted"),
+                _sum(L.format("HELD_ROOT"), MUL, 1),
+            ),
+            Stage(
+                "light_scale.round", ("+unit_x", "+unit_y", "+unit_z", "cosine"),
+                _sum(L.format("HELD_ROOT"), L.format("LIGHT_SCALE")),
+            ),
+        ),
+        late={"root": L.format("HELD_ROOT"), "below_one": L.format("HELD_ROOT")},
+    ),
+    "light_highlight": Module(
+        ("unit_x", "unit_y", "unit_z", "cosine", "material", "exponent"),
+        (Stage("light_highlight.round", ("highlight",), L.format("LIGHT_HIGHLIGHT")),),
+        held=(
+            ("half_x", "`PHONG_HALF_VECTOR_BITS"), ("half_z", "`PHONG_HALF_VECTOR_BITS"),
+            ("write_weight", 1), *_TABLE_PORTS,
+        ),
+        children=(
+            Child("u_reflection", "reflection", "0"),
+            Child(
+                "gen_power.u_specular_power.gen_tables.u_method", "specular_power_tables",
+                L.format("REFLECTION"),
+            ),
+            Child(
+                "gen_weight.u_specular_weight", "specular_weight",
+                _sum(L.format("REFLECTION"), L.format("POWER"),
+                     "-" + L.format("SPECULAR_WEIGHT")),
+            ),
+        ),
+        late={"exponent": _sum(L.format("HIGHLIGHT"), L.format("EXPONENT"))},
+    ),
+    "light_attenuation": Module(
+        ("depth", "turn", "cosine", "highlight"),
+        (
+            Stage("light_attenuation.factor", ("factor",), _SCALE_AT),
+            Stage(
+                "light_attenuation.scale", ("scaled_cosine", "scaled_highlight"),
+                _sum(_SCALE_AT, L.format("LIGHT_ATTENUATION")),
+            ),
+        ),
+        held=(
+            ("write_enable", 1),
+            ("write_address", "`PHONG_TURN_BITS + `PHONG_WEIGHT_INDEX_BITS"),
+            ("write_word", "2 * `PHONG_COEFFICIENT_BITS + 1"),
+        ),
+        late={"cosine": _SCALE_AT, "highlight": _SCALE_AT},
+    ),
+    "span_word": Module(
+        ("single", "advance", "load", "valid", "turn", "next_turn", "offered"),
+        (Stage("span_word", ("word",), "1"),),
+    ),
+    "light_terms": Module(
+        ("place_early", "cosine", "lit", "highlight"),
+        (
+            Stage(
+                "light_terms.sum", tuple(f"gen_channel[{c}].sum" for c in range(3)),
+                _sum(L.format("LIGHT_TABLE"), L.format("LIGHT_TERMS")),
+            ),
+        ),
+        held=(
+            ("write_diffuse", 3), ("write_highlight", 3),
+            ("write_address", "`PHONG_TURN_BITS + `PHONG_MATERIAL_BITS"),
+            ("write_word", "`PHONG_COEFFICIENT_BITS"),
+        ),
+        late={
+            "cosine": L.format("LIGHT_TABLE"), "lit": L.format("LIGHT_TABLE"),
+            "highlight": _sum(
+                L.format("LIGHT_TABLE"),
+                "(`PHONG_HIGHLIGHT_COLOUR ? 0 : `PHONG_MULTIPLIER_LATENCY)",
+            ),
+        },
+    ),
+    "light_sum": Module(
+        ("terms", "first", "material"),
+        (
+            Stage("light_sum.clamp", ("intensity",), _sum(L.format("LIGHT_SUM"), -2)),
+            Stage("light_sum.code", ("colour",), L.format("LIGHT_SUM")),
+        ),
+        held=(
+            ("write_ambient", 1), ("write_address", "`PHONG_MATERIAL_BITS"),
+            ("write_word", "`PHONG_COEFFICIENT_BITS"),
+        ),
+    ),
     "intensity_code": Module(
         ("value",),
         (

@@ -16,10 +16,19 @@ from phong75.sim.module.units import MODULES, bench_source
 #: The pipeline with Gouraud and flat shading.
 _TECHNIQUES = tuple(name for name, config in TECHNIQUES.items() if config is not DEFAULT)
 
-#: <module>@<configuration of the sweep>: modules that have further branches in that configuration.
+#: Builds for several lights.
+_LIGHTS = {
+    "lights_8": Config(name="lights_8", lights=8, highlight_colour=True),
+}
+
+#: {name: configuration}: what the benches are built in.
+BUILDS = CONFIGS | _LIGHTS
+
+#: <module>@<name of BUILDS>: modules that have further branches in that configuration.
 _VARIANTS = (
     "inverse_sqrt_iterated@fast_inverse_1", "specular_power_squaring@squaring_14",
-    "quadratic_normalizer@quadratic_spans_14",
+    "quadratic_normalizer@quadratic_spans_14", "light_highlight@lights_8", "light_terms@lights_8",
+    "context_interpolator@lights_8", "span_word@lights_8", "light_attenuation@lights_8",
 )  # fmt: skip
 
 #: The benches of the whole design's control and pipeline, and their top levels.
@@ -69,9 +78,10 @@ def module_bench(name: str) -> ModuleBench:
     module, _, config = name.partition("@")
     if module in MODULES:
         top, text = bench_source(module)
-        tests = "methods" if module_file(module).parent.name == "methods" else "datapath"
+        folder = module_file(module).parent.name
+        tests = folder if folder in ("methods", "lights") else "datapath"
         return ModuleBench(
-            name, top, f"tests.modules.{tests}", {f"{top}.v": text}, CONFIGS[config or "default"]
+            name, top, f"tests.modules.{tests}", {f"{top}.v": text}, BUILDS[config or "default"]
         )
     if name in _TECHNIQUES:
         tests = "tests.modules.phong_pipeline"

@@ -32,7 +32,7 @@ def register_map(address: int, config: Config) -> Destination:
     if address >> (config.material_bits + config.weight_index_bits) == 0:
         return Destination("weight", material, index)
     for name, first in FIELDS.items():
-        colours = 3 if name in ("ambient", "diffuse") else 1
+        colours = 3 if name in ("ambient", "diffuse", "highlight") else 1
         if first <= index < first + colours:
             return Destination(name, material, index - first)
     return Destination("", material, index)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from phong75.model.config import Config
 from phong75.model.registers import FIELDS
-from phong75.model.twin.core.register_map import register_map
+from phong75.model.twin.core.register_map import register_map, unsupported_write
 
 #: Fields that each light has for itself.
 OF_A_LIGHT = ("diffuse", "highlight", "half_x", "half_z", "attenuation")
@@ -43,8 +43,14 @@ def light_map(address: int, config: Config) -> LightDestination:
 
 
 def unsupported_light_write(address: int, word: int, built: Config) -> bool:
-    """Whether `light_map` of `built` flags a write of `word` to `address`: it names a light that is
-    not built, asks for more lights than are built, or for a coloured highlight that is left out."""
+    """Whether the RTL of `built`, which sums lights, flags a write of `word` to `address`.
+
+    Beside what `register_map` flags, these are writes for a light that is not built, more lights
+    than are built, and a coloured highlight that is left out.
+    """
+    below = 1 + built.material_bits + built.weight_index_bits
+    if unsupported_write(address & ((1 << below) - 1), word, built):
+        return True
     to = light_map(address, built)
     if to.light >= built.lights:
         return True

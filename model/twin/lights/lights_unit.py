@@ -83,10 +83,13 @@ def shade(
             cosine, highlight = light_attenuation(
                 depths[number], number, cosine, highlight, frame, config, trace
             )
+        reaches = lit(normal, frame.two_sided) & reached
+        if trace is not None:
+            trace["light_align.lit"] = (reaches.astype(np.int64),)
         terms += light_terms(
             coefficient(light.diffuse, (), material, config),
             coefficient(light.highlight, (), material, config),
-            cosine, highlight, lit(normal, frame.two_sided) & reached, config, trace,
+            cosine, highlight, reaches, config, trace,
         )  # fmt: skip
     ambient = coefficient(table.ambient, (), material, config)
     colour = light_sum(ambient, terms, config, traces[-1] if traces else None)

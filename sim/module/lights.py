@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""Vectors for the modules of rtl/lights/: what each is given and must give, for one light."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from phong75.model.arrays import Ints, Trace
+from phong75.model.config import Config
+from phong75.model.frame import Frame
+from phong75.model.twin.lights import lights_unit
+
+
+@dataclass(frozen=True)
+class Vectors:
+    """What `module` is given for one light, and what its stages must give.
+
+    inputs: int64[n] for each input of the bench. expected: {stage: int64[n] of each signal}. held:
+    values of ports that are held. codes: {port of a table's write enable: int64[3, M] or
+    int64[M], what the table holds for each material}.
+    """
+
+    module: str
+    inputs: list[Ints]
+    expected: Trace
+    held: dict[str, int] = field(default_factory=dict)
+    codes: dict[str, Ints] = field(default_factory=dict)
+
+
+def packed(mantissas: tuple[Ints, ...], config: Config) -> Ints:
+    """The words {z, y, x} of mantissas x, y, z, int64[n] each."""
+    bits = config.mantissa.bits
+    x, y, z = (part & ((1 << bits) - 1) for part in mantissas)
+    return z << 2 * bits | y << bits | x
+
+
+def vectors(
+    normals: Ints, material: Ints, frame: Frame, config: Config, light: int
+) -> Iterator[Vectors]:
+    """Yield the vectors of the modules that shade the light number `light`, in data order.
+
+    normals: int64[lights, 3, n], as for `lights_unit.shade`. material: int64[n].
+    """
+    traces: list[Trace] = [{} for _ in normals]
+    lights_unit.shade(normals, material, frame, config, traces)
+    first, trace = traces[0], traces[light]
+
+    def stages(*modules: str) -> Trace:
+        return {k: v for k, v in trace.items() if k.partition(".")[0] in modules}
+
+    ones = np.ones_like(material)
+    zero = (normals[0] == 0).all(axis=0).astype(np.int64)
+    shift = first["light_align.leading_zeros"][0]
+    yield Vectors(
+        "light_align", [*normals[light], shift, zero], stages("light_align"),
+        {"two_sided": int(frame.two_sided), "valid": 1},
+    )  # fmt: skip
+    if light == 0:
+        mantissas = packed(first["light_align.align"], config)
+        yield Vectors("held_root", [ones, mantissas], stages("held_root"))
+    mantissas, less = packed(trace["light_align.align"], config), trace["light_align.shift"][1]
+    root = first["held_root.hold"]
+    yield Vectors("light_scale", [mantissas, less, *root], stages("light_scale"))
+    *unit, cosine = trace["light_scale.round"]
+    seen, table = frame.light(light, config), frame.materials
+    half = (code & ((1 << config.half_vector.bits) - 1) for code in seen.half_vector)
+    highlight = trace["light_highlight.round"][0]
+    yield Vectors(
+        "light_highlight", [*unit, cosine, material, table.exponent[material]],
+        stages("reflection", "specular_power_tables", "specular_weight", "light_highlight"),
+        dict(zip(("half_x", "half_z"), half, strict=True)),
+    )  # fmt: skip
+    lit = trace["light_align.lit"][0]
+    yield Vectors(
+        "light_terms", [material, cosine, lit, highlight], stages("light_terms"),
+        codes={"write_diffuse": seen.diffuse.T, "write_highlight": seen.highlight.T},
+    )  # fmt: skip
+
+
+async def write_codes(tb, codes: dict[str, Ints]) -> None:
+    """Write the tables of `Vectors.codes`; tb: the `UnitTB` of the module."""
+    for enable, table in codes.items():
+        for channel, column in enumerate(np.atleast_2d(table)):
+            for material, code in enumerate(column.tolist()):
+                await tb.hold(
+                    write_address=material, write_word=code, **{enable: 1 << channel}
+                )  # fmt: skip
+        await tb.hold(**{enable: 0})
