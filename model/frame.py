@@ -124,7 +124,7 @@ class Frame:
     half_vectors: int64[L, n, 2], (hx, hz) of each of L lights in each span, in place of those of
     the lights; None if no light is at a place. depths: int64[L, n, 2], start and step in `depth` of
     the distance from each light. falloff: int64[L, P], the factor in `coefficient` at P equally
-    spaced depths from 0 to 1. Both are None if no light falls with the distance.
+    spaced depths from 0 to 1; constant beyond them. Both are None if no light falls with the distance.
     """
 
     width: int
@@ -291,10 +291,20 @@ def half_angle_codes(angle: Reals, config: Config) -> Ints:
     return config.half_vector.quantize(half)
 
 
-def distance_range(distances: list[Reals]) -> tuple[float, float]:
-    """The smallest and the largest of `distances`; 0 and 1 without any, and 1 apart if equal."""
+def distance_range(distances: list[Reals], falloff: Falloff | None) -> tuple[float, float]:
+    """The distances at which the table of `falloff` begins and ends: depths 0 and 1.
+
+    These are the smallest and the largest of `distances`, but the first and the last point of the
+    falloff where the factor is constant beyond those: the table has straight lines between equally
+    spaced distances, and a corner within one of them would be cut. No distance gets a depth beyond
+    -1.9 or 1.9, which the word holds.
+    """
     found = np.concatenate(distances)
     low, high = (float(found.min()), float(found.max())) if len(found) else (0.0, 1.0)
+    points = falloff.distances if falloff else ()
+    if points and max(low, points[0]) < min(high, points[-1]):
+        begin = max(low, points[0])
+        return begin, max(min(high, points[-1]), begin + max(begin - low, high - begin) / 1.9)
     return low, high if high > low else low + 1.0
 
 
@@ -304,13 +314,12 @@ def depth_codes(
     """Codes int64[n, 2] in `depth`: start and step of the distances along spans.
 
     first, last: float64[n], at the first and the last pixel. steps: int64[n], pixels minus 1. low,
-    high: the distances that depths of 0 and of 1 stand for. Depths are 0 or more and below 1 at
-    both ends.
+    high: the distances that depths of 0 and of 1 stand for. Depths are in the word at both ends.
     """
     fmt = config.depth
     ends = [fmt.quantize((d - low) / (high - low)) for d in (first, last)]
     slope = np.floor((ends[1] - ends[0]) / np.maximum(steps, 1) + 0.5).astype(np.int64)
-    lowest = -(ends[0] // np.maximum(steps, 1))
+    lowest = -((ends[0] - fmt.min) // np.maximum(steps, 1))
     highest = (fmt.max - ends[0]) // np.maximum(steps, 1)
     return np.stack([ends[0], np.clip(slope, lowest, highest)], axis=-1)
 

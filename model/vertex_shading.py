@@ -66,7 +66,7 @@ def _placed(
             half_vectors[number] = half_angle_codes(angle, config)
             normals[number] = places.seen(axes, normal)
         distance = place.distance(points, exact.eye)
-        low, high = distance_range([distance])
+        low, high = distance_range([distance], place.falloff)
         depths[number] = depth_codes(distance, distance, np.zeros(len(points), np.int64), low, high, config)
         falloff.append(falloff_codes(place.falloff, low, high, config))
     falls = any(place.falloff for place in exact.places)

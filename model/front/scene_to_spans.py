@@ -179,7 +179,7 @@ def _add_spans(frame: Frame, exact: ExactFrame, centre: Reals, config: Config) -
         elif place.position is not None:
             spans["start"], spans["step"] = codes
         ends = [place.distance(p, exact.eye) for p in (first, last)]
-        low, high = distance_range(ends)
+        low, high = distance_range(ends, place.falloff)
         depths[number] = depth_codes(*ends, steps[:, 0], low, high, config)
         falloff.append(falloff_codes(place.falloff, low, high, config))
     if placed:
@@ -372,15 +372,17 @@ def _spans(
 
 def _pieces(ends: list[Reals], length: Ints, exact: ExactFrame) -> Ints:
     """Into how many spans each segment is cut, int64[n], so that the direction to a light at a
-    place turns by at most about `places.MOST_TURN` along a span.
+    place, or to the point from which a distance is measured, turns by at most about
+    `places.MOST_TURN` along a span.
 
     ends: what is interpolated, at the first and the last pixel, float64[n, C].
     """
     pieces = np.ones_like(length)
     for place in exact.places:
-        if place.position is not None and place.rule != "face":
+        near = place.position is not None and place.rule != "face"
+        if near or (place.position is None and place.falloff and not place.along):
             first, last = (end[:, POINT][:, :3] / end[:, POINT][:, 3:] for end in ends)
-            turn = places.turn(place.position, first, last, exact.eye)
+            turn = places.turn(place.source, first, last, exact.eye)
             pieces = np.maximum(pieces, np.ceil(turn / places.MOST_TURN).astype(np.int64))
     return np.minimum(pieces, length)
 

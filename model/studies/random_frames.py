@@ -49,7 +49,7 @@ def placed(frame: Frame, seed: int | list[int], half_vectors: bool, falls: bool)
     """`frame` with random half vectors of each light in each span, and with random distances and
     factors of them, in place.
 
-    Some distances start below 0, which counts as 0, or at the ends of the word.
+    Some distances leave the table's range of 0 to 1, which clamps them.
     """
     rng, spans = np.random.default_rng(seed), frame.spans
     lights, count = frame.lights, len(spans)
@@ -59,10 +59,10 @@ def placed(frame: Frame, seed: int | list[int], half_vectors: bool, falls: bool)
         frame.half_vectors = h
     if falls:
         fmt, steps = C.depth, np.maximum(spans["length"].astype(np.int64) - 1, 1)
-        first, last = rng.integers(0, fmt.max + 1, (2, lights, count))
+        first, last = rng.integers(0, fmt.one, (2, lights, count))
         first[:, ::9] >>= 12
         last[:, 1::9] = fmt.max
-        first[:, 2::9] = -rng.integers(0, 1 << 24, first[:, 2::9].shape)
+        first[:, 2::9] = -rng.integers(0, fmt.one, first[:, 2::9].shape)
         frame.depths = np.stack([first, (last - first) // steps], axis=-1)
         frame.falloff = rng.integers(0, C.coefficient.one + 1, (lights, C.weight_points))
         frame.falloff[0, :2] = C.coefficient.one

@@ -33,7 +33,7 @@ module light_attenuation #(
     input wire [2*COEFFICIENT_BITS:0]     write_word,     // {step s1.16, left u1.16}
 
     // a turn, as it leaves the interpolators
-    input wire [DEPTH_BITS-1:0] depth,  // s0.29, distance from the light; below 0 counts as 0
+    input wire [DEPTH_BITS-1:0] depth,  // s1.29, distance from the light; 0 to 1: the table's range
     input wire [TURN_BITS-1:0]  turn,
 
     // the same turn, PHONG_LIGHT_NORMAL_LATENCY + PHONG_LIGHT_COLOUR_LATENCY - LATENCY cycles later
@@ -49,8 +49,9 @@ module light_attenuation #(
   localparam PLACE_AT = `PHONG_LIGHT_NORMAL_LATENCY + `PHONG_LIGHT_COLOUR_LATENCY - LATENCY
                       - `PHONG_SPECULAR_WEIGHT_LATENCY;
 
-  // ---- place ----
-  wire [COSINE_BITS-1:0] place = depth[SIGN-1-:COSINE_BITS] & {COSINE_BITS{~depth[SIGN]}};
+  // ---- place: the depth, cut, and clamped to the table ----
+  wire [COSINE_BITS-1:0] place =
+      (depth[SIGN-2-:COSINE_BITS] | {COSINE_BITS{depth[SIGN-1]}}) & {COSINE_BITS{~depth[SIGN]}};
   wire [COSINE_BITS-1:0] place_late;
   wire [TURN_BITS-1:0] turn_late;
 
@@ -133,7 +134,7 @@ module light_attenuation #(
     end
   endgenerate
 
-  wire unused = &{1'b0, depth[SIGN-1-COSINE_BITS:0]};
+  wire unused = &{1'b0, depth[SIGN-2-COSINE_BITS:0]};
 
 endmodule
 

@@ -19,9 +19,10 @@ from phong75.model.twin.primitives.round_saturate import round_saturate
 
 
 def place(depth: Ints, config: Config) -> Ints:
-    """Stage 1: the place in the table, int64[n] in the width of `cosine` (u0.18): the depth, cut; a
-    depth below 0 counts as 0."""
-    return np.maximum(depth, 0) >> (config.depth.fraction - config.cosine.fraction)
+    """Stage 1: the place in the table, int64[n] in the width of `cosine` (u0.18): the depth, cut,
+    and clamped to the table."""
+    cut = depth >> (config.depth.fraction - config.cosine.fraction)
+    return np.clip(cut, 0, config.cosine.max)
 
 
 def scale(word: Ints, factor: Ints, config: Config) -> Ints:
@@ -37,7 +38,7 @@ def light_attenuation(
     """N.L int64[n] in `cosine` and W(i) cos(s)**n int64[n] in `highlight` (u0.18 both), each times
     the factor of the distance.
 
-    depth: int64[n] in `depth` (s0.29), the interpolated distance. light: number of the light.
+    depth: int64[n] in `depth` (s1.29), the interpolated distance. light: number of the light.
     cosine, highlight: before. frame: has the table of the factors.
     """
     assert frame.falloff is not None

@@ -43,7 +43,7 @@ def interpolate(frame: Frame, span: Ints, k: Ints, config: Config) -> Ints:
 
 
 def depth_interpolators(frame: Frame, span: Ints, k: Ints, config: Config) -> Ints:
-    """Depths int64[lights, n] in `depth` (s0.29) at pixel `k` of the spans number `span`."""
+    """Depths int64[lights, n] in `depth` (s1.29) at pixel `k` of the spans number `span`."""
     assert frame.depths is not None
     return np.stack([
         context_interpolator(*its[span].T, k, config, config.depth)[0] for its in frame.depths
