@@ -124,7 +124,8 @@ class Frame:
     half_vectors: int64[L, n, 2], (hx, hz) of each of L lights in each span, in place of those of
     the lights; None if no light is at a place. depths: int64[L, n, 2], start and step in `depth` of
     the distance from each light. falloff: int64[L, P], the factor in `coefficient` at P equally
-    spaced depths from 0 to 1; constant beyond them. Both are None if no light falls with the distance.
+    spaced depths from 0 to 1, constant beyond them. Both are None if no light falls with the
+    distance.
     """
 
     width: int

@@ -12,7 +12,7 @@ one in the direction of the eye.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from phong75.model.arrays import Reals
 
 #: A distance below this part of the light's coordinates counts as 0.
 NOWHERE = 1e-12
+
+#: Largest turn of the direction to a light along a span, radians, unless asked otherwise.
+MOST_TURN = float(np.radians(2.0))
 
 #: Sine of the angle between light and eye below which the two count as parallel.
 PARALLEL = 1e-9
@@ -54,8 +57,9 @@ class Place:
     position: float64[3], the point from which the light shines; None for a light at infinity.
     source: float64[3], the point from which the distance is measured. along: whether the distance
     is measured along the direction of the eye only, as from an eye at infinity. falloff: None for a
-    light that does not fall with the distance. rule: one of RULES. All vectors are in the axes of
-    the points that the functions are given.
+    light that does not fall with the distance. rule: one of RULES. most_turn: the largest angle,
+    radians, between the directions to the light at the two ends of a span; a longer span is cut.
+    All vectors are in the axes of the points that the functions are given.
     """
 
     position: Reals | None = None
@@ -63,12 +67,13 @@ class Place:
     along: bool = False
     falloff: Falloff | None = None
     rule: str = "half"
+    most_turn: float = MOST_TURN
 
     def turned(self, axes: Reals) -> Place:
         """The place in other axes: float64[3, 3], unit rows in those of this place."""
         position = None if self.position is None else axes @ self.position
         source = None if self.source is None else axes @ self.source
-        return Place(position, source, self.along, self.falloff, self.rule)
+        return replace(self, position=position, source=source)
 
     def distance(self, points: Reals, eye: Reals) -> Reals:
         """The distances float64[n] of `points` (float64[n, 3]). eye: unit vector towards it."""
@@ -87,10 +92,6 @@ class Place:
 #: same, but the rotation takes the light's direction. middle: the frame of the middle for the whole
 #: span. face: the frame of the triangle's centre for all spans of the triangle.
 RULES = ("half", "light", "middle", "face")
-
-#: Largest angle between the directions to a light at the two ends of a span, radians; a longer span
-#: is cut. Not for the rule `face`.
-MOST_TURN = np.radians(2.0)
 
 
 def toward(position: Reals, points: Reals, eye: Reals) -> Reals:

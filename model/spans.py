@@ -279,9 +279,7 @@ def unpack(body: bytes, config: Config) -> Spans:
     return _unpack(body, config)[0]
 
 
-def _unpack(
-    body: bytes, config: Config
-) -> tuple[Spans, list[tuple[Ints, Ints]], dict[str, Ints]]:
+def _unpack(body: bytes, config: Config) -> tuple[Spans, list[tuple[Ints, Ints]], dict[str, Ints]]:
     """The spans of the records in `body`, start and step of each unit, and the further fields of
     lights at a place or that fall with the distance, {name: int64[n]}. Raises InputError."""
     if config.spans_carry_squares:
@@ -512,8 +510,8 @@ def _frame(header: dict[str, Any], body: bytes, config: Config) -> Frame:
     )
     if config.span_half_vector:
         frame.half_vectors = _of_lights(fields, ("half_x", "half_z"), frame, each, config)
-        zero = ~frame.half_vectors.any(axis=2)
-        _reject("a half vector has length zero", zero.any(axis=0))
+        zero = (frame.half_vectors == 0).all(axis=2)
+        _reject("a half vector has length zero", np.any(zero, axis=0))
     if config.attenuation:
         frame.depths = _of_lights(fields, ("start_depth", "step_depth"), frame, each, config)
         frame.falloff = np.array([light["falloff"] for light in header["lights"]], np.int64)

@@ -60,14 +60,14 @@ def _placed(
     depths, falloff = np.zeros_like(half_vectors), []
     for number, place in enumerate(exact.places):
         if place.position is not None:
-            axes, angle = places.frames(
-                places.toward(place.position, points, exact.eye), exact.eye
-            )
+            axes, angle = places.frames(places.toward(place.position, points, exact.eye), exact.eye)
             half_vectors[number] = half_angle_codes(angle, config)
             normals[number] = places.seen(axes, normal)
         distance = place.distance(points, exact.eye)
         low, high = distance_range([distance], place.falloff)
-        depths[number] = depth_codes(distance, distance, np.zeros(len(points), np.int64), low, high, config)
+        depths[number] = depth_codes(
+            distance, distance, np.zeros(len(points), np.int64), low, high, config
+        )
         falloff.append(falloff_codes(place.falloff, low, high, config))
     falls = any(place.falloff for place in exact.places)
     return replace(
@@ -76,9 +76,7 @@ def _placed(
     ), normals  # fmt: skip
 
 
-def intensities(
-    normals: Sequence[Reals], material: Ints, frame: Frame, config: Config
-) -> Reals:
+def intensities(normals: Sequence[Reals], material: Ints, frame: Frame, config: Config) -> Reals:
     """S of red, green, blue by the twin, float64[n, 3]: multiples of the LSB of `intensity`.
 
     normals: float64[n, 3] of each light, unit vectors in its frame. material: int64[n]. frame:

@@ -484,7 +484,7 @@ def light_rows(material: int, frame: Frame, config: Config, reach: list[float]) 
     diffuse, specular = np.zeros(3), np.zeros(3)
     for number, its_reach in enumerate([None, *reach]):
         light = frame.light(number, config)
-        half_vectors = light.half_vector
+        half_vectors: ArrayLike = light.half_vector
         if frame.half_vectors is not None and len(frame.spans):
             half_vectors = np.unique(frame.half_vectors[number], axis=0)
         error = cosine(config, reach=its_reach)

@@ -267,9 +267,7 @@ def _shade_places(
             vectors.append(unit @ turn.T)
             eyes.append(fixed)
         else:
-            axes, angle = places.frames(
-                places.toward(place.position, points, exact.eye), exact.eye
-            )
+            axes, angle = places.frames(places.toward(place.position, points, exact.eye), exact.eye)
             vectors.append(places.seen(axes, unit))
             eyes.append(places.of_eye(angle))
         falloff, distance = place.falloff, place.distance(points, exact.eye)

@@ -19,8 +19,8 @@ value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All
     diffuse = [1.0, 1.0, 1.0]       # Ld
     specular = [1.0, 1.0, 1.0]      # Ls
     name = "key light"
-    position = [1.0, 2.0, 3.0]      # in place of direction: a light at a place, in scene axes, or in
-                                    # camera axes from the camera's target; or "eye"
+    position = [1.0, 2.0, 3.0]      # in place of direction: a light at a place, in scene axes, or
+                                    # in camera axes from the camera's target; or "eye"
     place = "half"                  # the hardware's approximation: half, light, middle or face
     attenuation = { distance = [1, 9], values = [1.0, 0.2] }  # falls with the distance; or
     attenuation = { constant = 1.0, linear = 0.1, quadratic = 0.0 }  # as in OpenGL
@@ -563,9 +563,7 @@ def _light(table: _Table, camera: Camera, points: Reals) -> Light:
     return Light(direction, ambient, diffuse, specular, name, place)
 
 
-def _place(
-    table: _Table, camera: Camera, points: Reals, relative_to: str
-) -> tuple[Reals, Place]:
+def _place(table: _Table, camera: Camera, points: Reals, relative_to: str) -> tuple[Reals, Place]:
     """The direction to a light (unit vector, scene axes) and its place.
 
     The direction to a light at a place is that from the middle of the scene, the middle of the
@@ -588,8 +586,9 @@ def _place(
         # distance is measured from the eye; without one, from the point that is nearest to it.
         back, along = camera.axes[2], camera.projection == "orthographic"
         source = camera.eye if not along else back * float((points @ back).max())
-        if "relative_to" in table.values:
-            raise table.error("relative_to", "has no effect on a light at the eye")
+        for key in ("relative_to", "place"):
+            if key in table.values:
+                raise table.error(key, "has no effect on a light at the eye")
         return back, Place(None, source, along, falloff)
     if position is not None:
         where = np.asarray(table.triple("position", None))

@@ -46,7 +46,6 @@ from phong75.model.front.scene import WHITE, Light, Scene
 from phong75.model.front.visibility import GRID, Segments, Triangles
 from phong75.model.places import Place
 
-
 #: Columns of what is interpolated over a triangle: the normal; the exact intensities, in its place;
 #: the point (p/w, 1/w), and the centre of the face.
 NORMAL, INTENSITIES, POINT, CENTRE = slice(0, 3), slice(3, 6), slice(3, 7), slice(7, 10)
@@ -178,9 +177,9 @@ def _add_spans(frame: Frame, exact: ExactFrame, centre: Reals, config: Config) -
             frame.further[number - 1].start, frame.further[number - 1].step = codes
         elif place.position is not None:
             spans["start"], spans["step"] = codes
-        ends = [place.distance(p, exact.eye) for p in (first, last)]
-        low, high = distance_range(ends, place.falloff)
-        depths[number] = depth_codes(*ends, steps[:, 0], low, high, config)
+        begin, end = (place.distance(p, exact.eye) for p in (first, last))
+        low, high = distance_range([begin, end], place.falloff)
+        depths[number] = depth_codes(begin, end, steps[:, 0], low, high, config)
         falloff.append(falloff_codes(place.falloff, low, high, config))
     if placed:
         frame.half_vectors = half_vectors
@@ -354,37 +353,64 @@ def _spans(
     # spans of one pixel each.
     rounded = np.floor(np.ldexp(step[:, :3], config.normal.fraction) + 0.5)
     single = ~np.all(config.normal.contains(rounded), axis=1)
-    pieces = np.where(single, length, _pieces(ends, length, exact))
-    piece = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    row = np.repeat(np.arange(len(length)), pieces)
-    first = length[row] * piece // pieces[row]
+    row, first, count = _cut(
+        np.arange(len(length)), np.zeros_like(length), length, np.where(single, length, 1)
+    )
+    row, first, count = _cut_by_turn(row, first, count, start, step, exact)
     start = start[row] + first[:, None] * step[row]
     step = np.where(single[row, None], 0.0, step[row])
 
     spans = np.zeros(len(row), SPAN_DTYPE)
     spans["x"] = segments.left[row] + first
     spans["y"] = segments.y[row]
-    spans["length"] = length[row] * (piece + 1) // pieces[row] - first
+    spans["length"] = count
     spans["material"] = triangles.material[segments.triangle[row]]
     spans["start"], spans["step"] = encode(start[:, :3], step[:, :3], spans["length"], config)
     return spans, start, step
 
 
-def _pieces(ends: list[Reals], length: Ints, exact: ExactFrame) -> Ints:
-    """Into how many spans each segment is cut, int64[n], so that the direction to a light at a
-    place, or to the point from which a distance is measured, turns by at most about
-    `places.MOST_TURN` along a span.
+def _cut(row: Ints, first: Ints, count: Ints, pieces: Ints) -> tuple[Ints, Ints, Ints]:
+    """Cut runs of pixels into `pieces` each, int64[n], of lengths that differ by 1 at most.
 
-    ends: what is interpolated, at the first and the last pixel, float64[n, C].
+    A run is a part of the segment `row`, from its pixel `first` on, and `count` pixels long. The
+    same three arrays of the pieces are returned.
     """
-    pieces = np.ones_like(length)
-    for place in exact.places:
-        near = place.position is not None and place.rule != "face"
-        if near or (place.position is None and place.falloff and not place.along):
-            first, last = (end[:, POINT][:, :3] / end[:, POINT][:, 3:] for end in ends)
-            turn = places.turn(place.source, first, last, exact.eye)
-            pieces = np.maximum(pieces, np.ceil(turn / places.MOST_TURN).astype(np.int64))
-    return np.minimum(pieces, length)
+    run = np.repeat(np.arange(len(row)), pieces)
+    piece = np.arange(len(run)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    begin = count[run] * piece // pieces[run]
+    end = count[run] * (piece + 1) // pieces[run]
+    return row[run], first[run] + begin, end - begin
+
+
+def _cut_by_turn(
+    row: Ints, first: Ints, count: Ints, start: Reals, step: Reals, exact: ExactFrame
+) -> tuple[Ints, Ints, Ints]:
+    """Cut runs (see `_cut`) until the direction to a light at a place, or to the point from which a
+    distance is measured, turns by at most `Place.most_turn` along a run, or the run is one pixel.
+    The rule `face` needs no cut.
+
+    start, step: float64[s, C], of what is interpolated along the segments.
+    """
+    near = [
+        place for place in exact.places
+        if (place.position is not None and place.rule != "face")
+        or (place.position is None and place.falloff and not place.along)
+    ]  # fmt: skip
+    while near:
+        pieces = np.ones_like(count)
+        ends = [
+            start[row, POINT] + at[:, None] * step[row, POINT] for at in (first, first + count - 1)
+        ]
+        begin, end = (p[:, :3] / p[:, 3:] for p in ends)
+        for place in near:
+            assert place.source is not None
+            turn = places.turn(place.source, begin, end, exact.eye)
+            pieces = np.maximum(pieces, np.ceil(turn / place.most_turn).astype(np.int64))
+        pieces = np.minimum(pieces, count)
+        if (pieces == 1).all():
+            break
+        row, first, count = _cut(row, first, count, pieces)
+    return row, first, count
 
 
 def encode(start: Reals, step: Reals, length: ArrayLike, config: Config) -> tuple[Ints, Ints]:

@@ -29,8 +29,8 @@ module lights_unit #(
     output wire [TURN_BITS-1:0] last_turn,  // register, held for a frame: turns of a pixel minus 1
 
     // offered record: {step z, y, x, start z, y, x}, s1.30 each, of every unit, the first one in the
-    // lowest bits, each in the frame of its light; above them, if the build has them, {hz, hx} (s0.17)
-    // of every unit, then {step, start} of the distance (s1.29) of every unit
+    // lowest bits, each in the frame of its light; above them, if the build has them, {hz, hx}
+    // (s0.17) of every unit, then {step, start} of the distance (s1.29) of every unit
     input wire [VALUES_BITS-1:0]          values,
     input wire                            taken,     // the record is accepted as the first of a span
     input wire [`PHONG_COORDINATE_BITS:0] length,    // pixels

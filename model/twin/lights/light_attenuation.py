@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Twin of rtl/lights/light_attenuation.v: N.L and the highlight of a light that falls with distance.
+"""Twin of rtl/lights/light_attenuation.v: N.L and the highlight, times a factor of the distance.
 
 Warnock's first effect (Phong 1975, "Warnock's shading"): "decreasing intensity of the reflected
 light from the object with the distance between the light source and the object". The factor is

@@ -9,6 +9,7 @@ twin knows neither.
 from __future__ import annotations
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 
@@ -46,7 +47,8 @@ def depth_interpolators(frame: Frame, span: Ints, k: Ints, config: Config) -> In
     """Depths int64[lights, n] in `depth` (s1.29) at pixel `k` of the spans number `span`."""
     assert frame.depths is not None
     return np.stack([
-        context_interpolator(*its[span].T, k, config, config.depth)[0] for its in frame.depths
+        context_interpolator(its[span, 0], its[span, 1], k, config, config.depth)[0]
+        for its in frame.depths
     ])  # fmt: skip
 
 
@@ -68,7 +70,7 @@ def shade(
     for number, normal in enumerate(normals):
         trace = traces[number] if traces else None
         light = frame.light(number, config)
-        half_vector = light.half_vector
+        half_vector: tuple[Any, ...] = light.half_vector
         if span is not None:
             half_vector = frame.half_vector_of(number, span, config)
         seen = dataclasses.replace(frame, half_vector=half_vector, further=[])
