@@ -5,7 +5,8 @@
 //   {light, 0 or 1, material, ...}  as in register_map; the fields diffuse, half_x and half_z are
 //                                   those of the light
 //   {light, 1, material, 11...13}   ks Ls of red, green, blue (u1.16)
-//   {light, 1, k / 16, 16 + k % 16} interval k of the factor of the distance: {step s1.16, left u1.16}
+//   {light, 1, k / 16, 16 + k % 16} {step s1.16, left u1.16} of interval k of the factor of the
+//                                   distance
 //   {any, 1, any, 10}               bits 3 to 1: lights of the frame minus 1
 //
 // The light l is shaded in turn l / UNITS by the unit l mod UNITS.

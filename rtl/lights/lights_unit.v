@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // lights_unit: Phong shading with several lights, or with lights at a place,
 //   I = e + ka Ia + sum over lights of (ka La + f (kd Ld (N.L) + ks Ls W(i) cos(s)^n)),
-// for red, green and blue. The factor f falls with the distance from the light, or is 1. UNITS lights are shaded side by side, the others in further turns of the
-// pixel through the same units. 1/|N| is that of the first light's normal, so that any number of
-// units gives the same bits.
+// for red, green and blue. The factor f falls with the distance from the light, or is 1. UNITS
+// lights are shaded side by side, the others in further turns of the pixel through the same units.
+// 1/|N| is that of the first light's normal, so that any number of units gives the same bits. Half
+// vectors are registers, or come with the spans: those of lights at a place.
 // The module holds the wiring, in data order.
 // Latency: PHONG_PIXEL_LATENCY cycles from the last turn of a pixel to its colour (see latency.vh).
 // Throughput: one turn per cycle.
@@ -32,7 +33,7 @@ module lights_unit #(
     // lowest bits, each in the frame of its light; above them, if the build has them, {hz, hx}
     // (s0.17) of every unit, then {step, start} of the distance (s1.29) of every unit
     input wire [VALUES_BITS-1:0]          values,
-    input wire                            taken,     // the record is accepted as the first of a span
+    input wire                            taken,     // the record is taken as the first of a span
     input wire [`PHONG_COORDINATE_BITS:0] length,    // pixels
     input wire [`PHONG_MATERIAL_BITS-1:0] material,  // index
 
