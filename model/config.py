@@ -339,3 +339,10 @@ TECHNIQUES = {
     "gouraud": Config(name="gouraud", technique="gouraud"),
     "flat": Config(name="flat", technique="flat"),
 }
+
+#: Builds for eight lights of all colours: in turns, side by side, and mixes of both.
+LIGHT_BUILDS = {
+    name: Config(name=name, lights=MAX_LIGHTS, units=units, highlight_colour=True)
+    for units in UNITS
+    for name in [f"lights_{MAX_LIGHTS}" + (f"_units_{units}" if units > 1 else "")]
+}

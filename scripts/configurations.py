@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable
 
 from phong75.model.analysis.pruning import BY_HAND
-from phong75.model.config import DEFAULT, TECHNIQUES, Config
+from phong75.model.config import DEFAULT, LIGHT_BUILDS, TECHNIQUES, Config
 from phong75.model.frame import InputError
 from phong75.model.studies import methods
 
@@ -30,6 +30,7 @@ def _groups() -> dict[str, dict[str, Config]]:
         "with more built in": {
             "hold_unlit": dataclasses.replace(DEFAULT, name="hold_unlit", hold_unlit=True)
         },
+        "with several lights": LIGHT_BUILDS,
         "points of `phong75 sweep`": {n: c for n, c in sweep.items() if n != DEFAULT.name},
     }
 

@@ -7,12 +7,13 @@ Exit code: 0; 2 if the input is wrong or a tool failed, with one line on stderr 
 from __future__ import annotations
 
 import dataclasses
+import datetime
 from pathlib import Path
 
 from rich.table import Table
 
 from phong75.model.analysis.pruning import prune
-from phong75.model.config import DEFAULT, Config
+from phong75.model.config import DEFAULT, LIGHT_BUILDS, Config
 from phong75.model.frame import InputError
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
@@ -71,6 +72,20 @@ def figures(report: dict) -> dict:
     return found
 
 
+def record_lights(report: dict) -> None:
+    """Record what `report` found of a build for several lights, beside the other ones."""
+    rows = recorded.figures("lights")
+    rows[report["config"]] = {
+        "clock_mhz": report["fmax_mhz"]["median"], "resources": report["resources"],
+        "seeds": len(report["seeds"]), "date": datetime.date.today().isoformat(),
+        "commit": recorded.commit(),
+    }  # fmt: skip
+    builds = {name: rows[name] for name in LIGHT_BUILDS if name in rows}
+    command = "make synth CONFIG=lights_8, lights_8_units_2 …"
+    recorded.save("lights", command, tuple(report["tools"]), builds)
+    console.note("recorded in results/lights.json")
+
+
 def effort(report: dict) -> dict[str, int]:
     """How much was computed for `report`: seeds routed, and whether gates were counted."""
     return {"seeds": len(report["seeds"]), "gates": int("gates" in report)}
@@ -86,7 +101,9 @@ def main(config: Config, grade: int, seeds: int, count_gates: bool, record: bool
         raise InputError("--gates needs a library of cells: apt-get install qflow-tech-osu018")
     report = ecp5.run(config, grade, tuple(range(1, seeds + 1)), count_gates, Steps().step)
     console.show(table(report))
-    if record:
+    if record and config.name in LIGHT_BUILDS:
+        record_lights(report)
+    elif record:
         recorded.record(
             f"synth-grade{grade}",
             "make synth" + (f" GRADE={grade}" if grade != 6 else ""),

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import re
 import tempfile
 from collections import Counter
 from collections.abc import Iterator
@@ -39,6 +40,35 @@ def elaborated(options: list, top: str) -> Counter[str]:
     """{module: number of its instances} of any design, given as Verilator's `options` (files, or
     -F and a file list). Raises BuildError."""
     return _count(_tree(options, top), top)
+
+
+def structure(config: Config = DEFAULT, top: str = design.TOP) -> str:
+    """The elaborated design as text that stays the same where the hardware does.
+
+    Verilator has expanded macros, parameters and generate branches by then. Left out: places in the
+    files, and parameters, whose values stand where they are used. Addresses of the tree's nodes
+    become numbers in the order of their first appearance. Raises BuildError.
+    """
+    numbers: dict[str, int] = {}
+
+    def plain(node):
+        if isinstance(node, list):
+            return [plain(child) for child in node if not _is_parameter(child)]
+        if isinstance(node, dict):
+            return {key: plain(value) for key, value in node.items() if key != "loc"}
+        if isinstance(node, str) and _ADDRESS.fullmatch(node):
+            return numbers.setdefault(node, len(numbers))
+        return node
+
+    tree = elaborate(top, config)
+    return json.dumps([plain(tree["modulesp"]), plain(tree["miscsp"])])
+
+
+_ADDRESS = re.compile(r"\([A-Z]+\)")
+
+
+def _is_parameter(node) -> bool:
+    return isinstance(node, dict) and node.get("type") == "VAR" and bool(node.get("isParam"))
 
 
 def _tree(options: list, top: str) -> dict:

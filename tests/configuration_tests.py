@@ -378,6 +378,11 @@ def _default() -> ConfigurationTest:
 def _hold() -> ConfigurationTest:
     config = dataclasses.replace(C, name="hold", hold_unlit=True)
     frame, single = plain(), dataclasses.replace(plain(), two_sided=False)
+    # A zero normal is flagged once, also if the pixels behind it face away from the light.
+    for spans in (frame.spans, single.spans):
+        spans["start"][10:14:2] = spans["step"][10:14:2] = 0
+        spans["start"][11:15:2] = 0, 0, -C.normal.one
+        spans["step"][11:15:2] = 0
     jobs = SimJob(frame), SimJob(single), SimJob(single, idle=100, stall=64, seed=SEED)
     return ConfigurationTest(config, *jobs, full=C)
 

@@ -9,23 +9,44 @@ that is not in the file counts as fast until the next record.
 
 from __future__ import annotations
 
+import importlib.metadata
 import json
 import sys
 import threading
 import time
+from pathlib import Path
 
 import pytest
 
 from phong75.sim.design import PACKAGE
 
+TESTS = Path(__file__).parent
 DURATIONS = PACKAGE / "results" / "test-durations.json"
 FAST_S = 0.4
+#: Folders of tests that use packages which the main installation does not have.
+OPTIONAL = ("hardware", "page", "docs")
 PROGRESS_S = 10
 
 
 def recorded_durations() -> dict[str, float]:
     """{test id: seconds} of the record; empty if there is none."""
     return json.loads(DURATIONS.read_text())["seconds"] if DURATIONS.is_file() else {}
+
+
+@pytest.fixture(autouse=True)
+def main_installation(request, monkeypatch):
+    """Tests outside the folders of OPTIONAL find no package of the hardware tools, so that `make
+    test-all` fails where `make test` would fail without them."""
+    if request.path.relative_to(TESTS).parts[0] in OPTIONAL:
+        return
+    version = importlib.metadata.version
+
+    def hidden(package: str) -> str:
+        if package.startswith("yowasp"):
+            raise importlib.metadata.PackageNotFoundError(package)
+        return version(package)
+
+    monkeypatch.setattr(importlib.metadata, "version", hidden)
 
 
 class Progress:
@@ -57,15 +78,20 @@ class Progress:
 
     def _print(self) -> None:
         with self._lock:
-            elapsed = time.monotonic() - self._start
-            part = self._weight_done / self._weight_all if self._weight_all else 1.0
-            running = [test.partition("::")[2] or test for test in self._running]
-            left = f"about {elapsed * (1 - part) / part / 60:.1f} min left" if part > 0.02 else ""
-            what = f"; running {', '.join(running)}" if running else ""
-            print(
-                f"{self._done} of {self._all} tests, {elapsed / 60:.1f} min, {left}{what}",
-                file=sys.__stderr__, flush=True,
-            )  # fmt: skip
+            now = time.monotonic()
+            elapsed = now - self._start
+            # A running test counts for as long as it has run, up to what it took in the record.
+            done = self._weight_done + sum(
+                min(now - begin, self.weight(test)) for test, begin in self._running.items()
+            )
+            part = done / self._weight_all if self._weight_all else 1.0
+            parts = [f"{self._done} of {self._all} tests", f"{elapsed / 60:.1f} min"]
+            if part > 0.02:
+                parts.append(f"about {elapsed * (1 - part) / part / 60:.1f} min left")
+            line = ", ".join(parts)
+            if running := [test.partition("::")[2] or test for test in self._running]:
+                line += f"; running {', '.join(running)}"
+            print(line, file=sys.__stderr__, flush=True)
 
     @pytest.hookimpl(trylast=True)
     def pytest_runtest_logstart(self, nodeid):

@@ -25,7 +25,10 @@ def run(module: ModuleBench, folder, bench: Bench | None = None) -> None:
     """Run the cocotb tests of `module`, in `bench` if given; fails the pytest test if one fails."""
     bench = bench or Bench(module.top, module.config, module.sources)
     with contextlib.suppress(SystemExit):  # inside pytest, cocotb's runner exits if a test fails
-        bench.run(module.tests, folder, seed=SEED, extra_env=module.environment(folder, SEED))
+        bench.run(
+            module.tests, folder, seed=SEED, test_filter=module.test_filter,
+            extra_env=module.environment(folder, SEED),
+        )  # fmt: skip
     if failures := read_results(folder).failures:
         pytest.fail("\n".join(failures), pytrace=False)
 

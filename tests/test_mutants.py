@@ -10,11 +10,11 @@ from tests.campaigns import mutation
 from tests.campaigns.relevant_benches import BENCHES, relevant_benches
 
 SAMPLE = 8
-#: Files that the default configuration builds completely.
+#: Files that the default configuration builds completely, and of which no mutant in the sample
+#: hangs: that takes BENCH_SECONDS.
 FILES = (
     "span_walker", "linear_interpolator", "inverse_sqrt_linear", "versine_of_cross",
-    "specular_weight",
-    "round_saturate", "leading_zeros", "left_shifter", "narrow_multiplier", "intensity_code",
+    "specular_weight", "round_saturate", "left_shifter", "narrow_multiplier", "intensity_code",
 )  # fmt: skip
 
 

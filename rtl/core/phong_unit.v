@@ -167,7 +167,7 @@ module phong_unit (
 
   generate
     if (HOLD_UNLIT) begin : gen_hold
-      wire shown_now;
+      wire pixel_held, shown_now;
 
       normal_hold u_normal_hold (
           .clk(clk),
@@ -176,12 +176,14 @@ module phong_unit (
           .x(normal_x),
           .y(normal_y),
           .z(normal_z),
-          .held_valid(held_valid),
+          .held_valid(pixel_held),
           .shown(shown_now),
           .held_x(held_x),
           .held_y(held_y),
           .held_z(held_z)
       );
+
+      assign held_valid = pixel_held & shown_now;  // a held zero normal is flagged once
 
       delay #(
           .BITS  (1),

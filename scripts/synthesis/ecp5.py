@@ -28,7 +28,7 @@ from phong75.model.config import Config
 from phong75.sim import design
 from phong75.sim.build import generate_header, run_tool
 from phong75.sim.design import BUILD
-from phong75.sim.elaborate import includes, instances
+from phong75.sim.elaborate import includes, structure
 
 #: Where each configuration has a folder of its own.
 FOLDER = BUILD / "synth"
@@ -453,35 +453,29 @@ def summary(config: Config, grade: int, synthesis: dict, routed: list[dict]) -> 
     }  # fmt: skip
 
 
-def design_text(config: Config) -> str:
-    """The Verilog of `config` as the tools see it: the modules it instantiates and the harness,
-    macros expanded, comments gone. Raises BuildError.
+def technology_text(config: Config) -> str:
+    """The Verilog of the technology's primitives and of the harness as the tools see it for
+    `config`: macros expanded, without comments. Raises BuildError.
     """
-    used = set(instances(config))
-    # All of the technology: what its modules stand for does not name what they are made of.
-    files = [
-        f
-        for f in design.sources(technology=design.ECP5)
-        if f.stem in used or f.parent == design.ECP5
-    ]
-    include = includes(config)
-    return run_tool(["verilator", "-E", "-P", *include, *files, design.ECP5 / f"{_HARNESS}.v"])
+    files = sorted(design.ECP5.glob("*.v"))
+    return run_tool(["verilator", "-E", "-P", *includes(config), *files])
 
 
 def design_key(config: Config, grade: int, seed: int, tools: dict[str, str] | None = None) -> str:
-    """What a routed clock of `config` depends on, as a hash: `design_text`, how it is synthesized
-    and routed, the tools ({package: version}, None: those installed), the limits of the blocks.
-    Raises BuildError, SynthesisError.
+    """What a routed clock of `config` depends on, as a hash: the elaborated design, the primitives
+    of the technology, how the design is synthesized and routed, the tools ({package: version},
+    None: those installed), the limits of the blocks. Raises BuildError, SynthesisError.
 
     For a record that is kept for long. The keys of build/synth go by the files, so that any edit of
-    any of them ends what is kept there; this one stays the same where only comments and blanks, or
-    modules and fields of a configuration that this one does not use, were edited. (Lines that move
-    give Yosys other names, and with them a seed of nextpnr other luck; the clock is still one of
-    this design.)
+    any of them ends what is kept there; this key stays the same where only comments and blanks,
+    generate branches that `config` leaves out, or fields that it does not use were edited. (Lines
+    that move give Yosys other names, and with them a seed of nextpnr other luck; the clock is still
+    one of this design.)
     """
     arguments = str(_nextpnr(BUILD / "synth", grade, seed))
     how = (_YOSYS, arguments, str(versions() if tools is None else tools))
-    return _digest(*how, str(GRADES[grade]), re.sub(r"\s+", "", design_text(config)))
+    technology = re.sub(r"\s+", "", technology_text(config))
+    return _digest(*how, str(GRADES[grade]), structure(config), technology)
 
 
 def run(
