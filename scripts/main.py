@@ -264,7 +264,7 @@ def synth(
         ),
     ] = "",
     grade: options.Grade = 6,
-    seeds: options.Seeds = 3,
+    seeds: options.SeedsOrNone = 3,
     gates: options.Gates = False,
     record: options.Record = False,
 ) -> int:

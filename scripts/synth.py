@@ -91,6 +91,26 @@ def effort(report: dict) -> dict[str, int]:
     return {"seeds": len(report["seeds"]), "gates": int("gates" in report)}
 
 
+def count(config: Config, record: bool) -> int:
+    """Synthesize `config` without routing, and show what it takes of the chip; returns the exit
+    code. Raises SynthesisError."""
+    folder = ecp5.FOLDER / config.name
+    folder.mkdir(parents=True, exist_ok=True)
+    with Steps().step("synthesis"):
+        used = ecp5.synthesize(config, folder)["resources"]
+    out = Table("what", "number", title=config.name)
+    for name, value in used.items():
+        out.add_row(name, str(value))
+    console.show(out)
+    if record and config.name in LIGHT_BUILDS:
+        none = {"median": None}
+        report = {"config": config.name, "resources": used, "fmax_mhz": none, "seeds": []}
+        record_lights(report | {"tools": ecp5.versions()})
+    elif record:
+        console.note("not recorded: a record needs a clock, --seeds 1 or more")
+    return console.GOOD
+
+
 def main(config: Config, grade: int, seeds: int, count_gates: bool, record: bool) -> int:
     """Synthesize and route `config` with seeds 1 to `seeds`; returns the exit code.
 
@@ -99,6 +119,8 @@ def main(config: Config, grade: int, seeds: int, count_gates: bool, record: bool
     recorded.check(record)
     if count_gates and not ecp5.LIBERTY.is_file():
         raise InputError("--gates needs a library of cells: apt-get install qflow-tech-osu018")
+    if seeds == 0:
+        return count(config, record)
     report = ecp5.run(config, grade, tuple(range(1, seeds + 1)), count_gates, Steps().step)
     console.show(table(report))
     if record and config.name in LIGHT_BUILDS:

@@ -477,6 +477,8 @@ def _lights(lights: int, units: int, coloured: bool) -> ConfigurationTest:
         SimJob(most, stop_after=clocks, stall=stall) for clocks, stall in ((90, 255), (301, 0))
     ]
     jobs += [SimJob(most, reset_first=True, idle=200), SimJob(most, stall=200)]
+    for clocks in range(25, 25 + 9 * lights, 5):  # a reset in every turn of a pixel
+        jobs += [SimJob(pixel, stop_after=clocks), SimJob(pixel, reset_first=True)]
     jobs.append(SimJob(most, writes=_odd_light_writes(most, config)))
     return ConfigurationTest(config, *jobs)
 

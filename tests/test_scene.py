@@ -40,7 +40,9 @@ def on_screen(scene):
 
 
 def test_bundled_scenes():
-    assert set(bundled_scenes()) == {"cone", "pyramid", "sphere", "still_life", "teapot", "torus"}
+    assert set(bundled_scenes()) == {
+        "coloured_lights", "cone", "lamps", "pyramid", "sphere", "still_life", "teapot", "torus",
+    }  # fmt: skip
     for name in bundled_scenes():
         scene = load_scene(name)
         assert (scene.name, scene.width, scene.height) == (name, 640, 480)

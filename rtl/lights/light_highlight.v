@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // light_highlight: W(i) cos(s)^n of one light; rounded to a word if it is to be multiplied by a
 // colour or by the factor of the distance.
-// Latency: LATENCY cycles (PHONG_LIGHT_HIGHLIGHT_LATENCY in latency.vh).
+// Latency: LATENCY cycles (PHONG_LIGHT_HIGHLIGHT_LATENCY in latency.vh; 44 by default).
 // Throughput: one result per cycle.
 // Reset: none; the table is undefined until written.
 `default_nettype none

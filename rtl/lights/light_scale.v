@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // light_scale: unit normal of one light, in the light's frame: its mantissas times 1/|N0|.
-// Latency: LATENCY cycles from the mantissas (PHONG_HELD_ROOT_LATENCY + PHONG_LIGHT_SCALE_LATENCY in
-// latency.vh).
+// Latency: from the root PHONG_LIGHT_SCALE_LATENCY cycles (see latency.vh; 5 by default), from the
+// mantissas LATENCY cycles.
 // Throughput: one normal per cycle.
 // Reset: none.
 `default_nettype none

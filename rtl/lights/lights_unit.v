@@ -6,7 +6,7 @@
 // 1/|N| is that of the first light's normal, so that any number of units gives the same bits. Half
 // vectors are registers, or come with the spans: those of lights at a place.
 // The module holds the wiring, in data order.
-// Latency: PHONG_PIXEL_LATENCY cycles from the last turn of a pixel to its colour (see latency.vh).
+// Latency: that of a pixel in latency.vh, from the last turn of a pixel to its colour.
 // Throughput: one turn per cycle.
 // Reset: synchronous; of the flags only.
 `default_nettype none
@@ -29,11 +29,11 @@ module lights_unit #(
 
     output wire [TURN_BITS-1:0] last_turn,  // register, held for a frame: turns of a pixel minus 1
 
-    // offered record: {step z, y, x, start z, y, x}, s1.30 each, of every unit, the first one in the
-    // lowest bits, each in the frame of its light; above them, if the build has them, {hz, hx}
+    // offered record: {step z, y, x, start z, y, x}, s1.30 each, of every unit, the first unit in
+    // the lowest bits, each in the frame of its light; above them, if the build has them, {hz, hx}
     // (s0.17) of every unit, then {step, start} of the distance (s1.29) of every unit
     input wire [VALUES_BITS-1:0]          values,
-    input wire                            taken,     // the record is taken as the first of a span
+    input wire                            taken,     // it is accepted as the first of a span
     input wire [`PHONG_COORDINATE_BITS:0] length,    // pixels
     input wire [`PHONG_MATERIAL_BITS-1:0] material,  // index
 

@@ -137,6 +137,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "hardware": lambda: tables.hardware(tables.hardware_rows(tables.HARDWARE)),
     "tests": lambda: tables.hardware(tables.hardware_rows(tables.TESTS)),
     "speed": lambda: tables.hardware(tables.hardware_rows(tables.SPEED)),
+    "lights": lambda: tables.lights(_record("lights")),
     "shapes": facts.shapes,
     "proofs": facts.proofs,
     "lut-counts": lambda: tables.lut_counts(_synthesis("resources")),

@@ -161,7 +161,10 @@ def register_table(config: Config = C) -> str:
         (f"`{{1, any, {field['half_x']}}}`, `{{1, any, {field['half_z']}}}`",
          f"hx, hz ({config.half_vector}): h = (sin ½a, 0, cos ½a) for an eye at angle a from the "
          "light"),
-        (f"`{{1, any, {field['control']}}}`", "bit 0: two-sided, shade \\|Zn\\|"),
+        (f"`{{1, any, {field['control']}}}`", "bit 0: two-sided, shade \\|Zn\\|; bits 3 to 1, "
+         "builds for several lights: lights of the frame minus 1"),
+        (f"`{{1, material, {field['highlight']}…{field['highlight'] + 2}}}`",
+         f"builds with coloured highlights: ks·Ls of red, green, blue ({c})"),
     ]  # fmt: skip
     return markdown(("address", "contents"), rows, left=2)
 

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from phong75.model.config import LIGHT_BUILDS
 from phong75.model.studies import pareto
 from phong75.scripts import recorded
 
@@ -206,6 +207,25 @@ def _benchmark(found: dict[str, Any]) -> list[tuple[str, str, str]]:
          f"{found['model_frames_per_s']:.0f} frames/s on one core",
          "one machine; the pixel stages only"),
     ]  # fmt: skip
+
+
+def lights(builds: dict[str, Any]) -> str:
+    """The builds for eight lights of the record `builds`: what units side by side cost."""
+    rows = []
+    for name, config in LIGHT_BUILDS.items():
+        found = builds.get(name, {})
+        used, clock = found.get("resources", {}), found.get("clock_mhz")
+        rate = f"{clock / config.turns:.0f}" if clock else DASH
+        rows.append((
+            str(config.units), str(config.turns),
+            *(str(used.get(key, DASH)) for key in ("dsp", "lut_sites", "ff", "ebr")),
+            number(clock, 0), rate,
+        ))  # fmt: skip
+    header = (
+        "units", "cycles a pixel", "multipliers", "LUT sites", "flip-flops", "block RAMs",
+        "clock, MHz", "Mpixel/s",
+    )  # fmt: skip
+    return markdown(header, rows)
 
 
 #: The records of the table of long runs, in its order, and what makes lines of each.

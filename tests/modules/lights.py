@@ -19,7 +19,7 @@ from phong75.model.twin.lights.held_root import held_root
 from phong75.model.twin.lights.light_attenuation import light_attenuation
 from phong75.model.twin.lights.light_sum import light_sum
 from phong75.sim import environment
-from phong75.sim.module.lights import packed, vectors, write_codes
+from phong75.sim.module.lights import factor_words, packed, vectors, write_codes
 from phong75.sim.module.unit_tb import UnitTB
 from tests.modules.benches import BUILDS
 from tests.modules.datapath import _edges, _normals
@@ -123,12 +123,9 @@ async def light_attenuation_random(dut):
     frame.falloff = rng.integers(0, one + 1, (turns, C.weight_points))
     frame.falloff[0, :3] = one, one, 0
     for turn in range(turns):
-        for k, left in enumerate(frame.falloff[turn, :-1].tolist()):
-            step = int(frame.falloff[turn, k + 1]) - left & ((2 << C.coefficient.bits) - 1)
-            await tb.hold(
-                write_address=turn << C.weight_index_bits | k,
-                write_word=step << C.coefficient.bits | left, write_enable=1,
-            )  # fmt: skip
+        for k, word in enumerate(factor_words(frame.falloff[turn], C).tolist()):
+            address = turn << C.weight_index_bits | k
+            await tb.hold(write_address=address, write_word=word, write_enable=1)
     await tb.hold(write_enable=0)
     depth = _edges(C.depth, rng, RANDOM)
     cosine, highlight = _edges(C.cosine, rng, RANDOM), _edges(C.highlight, rng, RANDOM)
