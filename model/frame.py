@@ -233,7 +233,7 @@ def with_lights(config: Config, frame: Frame) -> Config:
         raise InputError(f"{frame.lights} lights in a build for {config.lights}")
     if frame.falloff is not None and not config.attenuation:
         raise InputError("a light falls with the distance, which the build leaves out")
-    if frame.half_vectors is not None and not config.span_half_vector:
+    if frame.half_vectors is not None and config.specular and not config.span_half_vector:
         raise InputError("a light is at a place, which the build leaves out")
     return config
 

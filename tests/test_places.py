@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from phong75.model import twin
-from phong75.model.analysis import error_budget, reference
+from phong75.model.analysis import error_budget, metrics, reference
+from phong75.model.analysis.pruning import prune
 from phong75.model.config import DEFAULT as C
 from phong75.model.config import TECHNIQUES
 from phong75.model.frame import InputError, distance_range, falloff_codes, fitted, with_lights
@@ -29,6 +31,10 @@ from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import read_spans, write_spans
 from phong75.model.studies.light_places import measure
 from phong75.model.studies.random_frames import placed, random_lights
+from phong75.sim import design
+from phong75.sim.build import Bench
+from phong75.sim.frame.locate import locate
+from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 
 RNG = np.random.default_rng(75)
 
@@ -249,6 +255,25 @@ def test_a_light_needs_no_more_than_it_uses():
             with_lights(replace(near, **{feature: False}), frame)
 
 
+def test_a_scene_decides_what_is_built(tmp_path):
+    near = '[light]\nposition = [0.2, -0.4, 1.0]'
+    matte = near.replace("position", "attenuation = { linear = 1 }\nposition")
+    for text, change, left_out in (
+        (near, lambda table: None, set()),
+        (matte, lambda table: table.weight.fill(0), {"specular", "span_half_vector"}),
+        (matte.replace("[0.2, -0.4, 1.0]", '"eye"'), lambda table: None, set()),
+    ):
+        frame = front_end(scene_of(text, tmp_path)).frame
+        change(frame.materials)
+        config, rows = prune(frame)
+        full = with_lights(C, frame)
+        assert all(getattr(full, name) and not getattr(config, name) for name in left_out)
+        assert config.lights == 1 and with_lights(config, frame) == config
+        assert (twin.render(frame, config).rgb == twin.render(frame).rgb).all()
+        named = {row.feature: row.needed for row in rows}
+        assert named.get("attenuation", False) == full.attenuation == config.attenuation
+
+
 @pytest.mark.parametrize("units", [1, 2])
 def test_span_files_keep_half_vectors_and_distances(units, tmp_path):
     frame = front_end(load_scene("near_light", (64, 48))).frame
@@ -297,3 +322,26 @@ def test_places_in_axes_of_the_camera(tmp_path):
     middle = scene_of("[light]\nposition = [0, 0, 0]", tmp_path)  # the middle of the torus
     assert np.allclose(middle.light, middle.camera.axes[2])
     assert isinstance(middle.lights[0], Light) and len(front_end(middle).frame.spans) > 0
+
+
+# -- broken designs --------------------------------------------------------------------------------
+
+
+def test_a_broken_design_is_located(tmp_path):
+    """Each break shows as wrong pixels; where a stage of the twin is wrong, that stage is named."""
+    frame = placed(random_lights(75, 60, 5, 2), 75, True, True)
+    config, want = fitted(C, frame), twin.render(frame)
+    for module, old, new, stage in (
+        ("light_attenuation", "| {COSINE_BITS{depth[SIGN-1]}}", "", "light_attenuation.factor"),
+        ("span_word", "single ? held : kept", "held", ""),
+    ):
+        rtl = tmp_path / module
+        shutil.copytree(design.RTL, rtl)
+        file = design.module_file(module, rtl)
+        assert old in file.read_text()
+        file.write_text(file.read_text().replace(old, new))
+        bench = Bench("frame_bench", config, rtl=rtl, quick=True)
+        compared = metrics.compare(want, simulate_jobs([SimJob(frame)], config, bench)[0].pixels)
+        assert compared.mismatches > 1, module
+        if stage.startswith(module):
+            assert f"stage {stage}" in locate(frame, compared.first.index, config, rtl)
