@@ -346,3 +346,12 @@ LIGHT_BUILDS = {
     for units in UNITS
     for name in [f"lights_{MAX_LIGHTS}" + (f"_units_{units}" if units > 1 else "")]
 }
+
+#: Builds for one white light: at a place, falling with the distance, and both.
+PLACE_BUILDS = {
+    "placed_light": Config(name="placed_light", span_half_vector=True),
+    "falling_light": Config(name="falling_light", attenuation=True),
+    "placed_falling_light": Config(
+        name="placed_falling_light", span_half_vector=True, attenuation=True
+    ),
+}

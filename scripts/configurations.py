@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable
 
 from phong75.model.analysis.pruning import BY_HAND
-from phong75.model.config import DEFAULT, LIGHT_BUILDS, TECHNIQUES, Config
+from phong75.model.config import DEFAULT, LIGHT_BUILDS, PLACE_BUILDS, TECHNIQUES, Config
 from phong75.model.frame import InputError
 from phong75.model.studies import methods
 
@@ -31,6 +31,7 @@ def _groups() -> dict[str, dict[str, Config]]:
             "hold_unlit": dataclasses.replace(DEFAULT, name="hold_unlit", hold_unlit=True)
         },
         "with several lights": LIGHT_BUILDS,
+        "with a light at a place": PLACE_BUILDS,
         "points of `phong75 sweep`": {n: c for n, c in sweep.items() if n != DEFAULT.name},
     }
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from rich.table import Table
 
 from phong75.model.analysis.pruning import prune
-from phong75.model.config import DEFAULT, LIGHT_BUILDS, Config
+from phong75.model.config import DEFAULT, LIGHT_BUILDS, PLACE_BUILDS, Config
 from phong75.model.frame import InputError
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
@@ -73,17 +73,21 @@ def figures(report: dict) -> dict:
 
 
 def record_lights(report: dict) -> None:
-    """Record what `report` found of a build for several lights, beside the other ones."""
-    rows = recorded.figures("lights")
+    """Record what `report` found of a build for several lights or for a light at a place, beside the
+    other ones."""
+    name, group = ("lights", LIGHT_BUILDS)
+    if report["config"] in PLACE_BUILDS:
+        name, group = "places", PLACE_BUILDS
+    rows = recorded.figures(name)
     rows[report["config"]] = {
         "clock_mhz": report["fmax_mhz"]["median"], "resources": report["resources"],
         "seeds": len(report["seeds"]), "date": datetime.date.today().isoformat(),
         "commit": recorded.commit(),
     }  # fmt: skip
-    builds = {name: rows[name] for name in LIGHT_BUILDS if name in rows}
-    command = "make synth CONFIG=lights_8, lights_8_units_2 …"
-    recorded.save("lights", command, tuple(report["tools"]), builds)
-    console.note("recorded in results/lights.json")
+    builds = {build: rows[build] for build in group if build in rows}
+    command = f"make synth CONFIG={', '.join(list(group)[:2])} …"
+    recorded.save(name, command, tuple(report["tools"]), builds)
+    console.note(f"recorded in results/{name}.json")
 
 
 def effort(report: dict) -> dict[str, int]:
@@ -102,7 +106,7 @@ def count(config: Config, record: bool) -> int:
     for name, value in used.items():
         out.add_row(name, str(value))
     console.show(out)
-    if record and config.name in LIGHT_BUILDS:
+    if record and config.name in LIGHT_BUILDS | PLACE_BUILDS:
         none = {"median": None}
         report = {"config": config.name, "resources": used, "fmax_mhz": none, "seeds": []}
         record_lights(report | {"tools": ecp5.versions()})
@@ -123,7 +127,7 @@ def main(config: Config, grade: int, seeds: int, count_gates: bool, record: bool
         return count(config, record)
     report = ecp5.run(config, grade, tuple(range(1, seeds + 1)), count_gates, Steps().step)
     console.show(table(report))
-    if record and config.name in LIGHT_BUILDS:
+    if record and config.name in LIGHT_BUILDS | PLACE_BUILDS:
         record_lights(report)
     elif record:
         recorded.record(

@@ -137,6 +137,8 @@ TABLES: dict[str, Callable[[], str]] = {
     "hardware": lambda: tables.hardware(tables.hardware_rows(tables.HARDWARE)),
     "tests": lambda: tables.hardware(tables.hardware_rows(tables.TESTS)),
     "speed": lambda: tables.hardware(tables.hardware_rows(tables.SPEED)),
+    "places": lambda: tables.places(_record("places")),
+    "place-rules": facts.place_rules,
     "lights": lambda: tables.lights(_record("lights")),
     "shapes": facts.shapes,
     "proofs": facts.proofs,
