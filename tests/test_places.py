@@ -256,7 +256,7 @@ def test_a_light_needs_no_more_than_it_uses():
 
 
 def test_a_scene_decides_what_is_built(tmp_path):
-    near = '[light]\nposition = [0.2, -0.4, 1.0]'
+    near = "[light]\nposition = [0.2, -0.4, 1.0]"
     matte = near.replace("position", "attenuation = { linear = 1 }\nposition")
     for text, change, left_out in (
         (near, lambda table: None, set()),
