@@ -236,15 +236,6 @@ Out = Annotated[
     Path | None,
     typer.Option("--out", metavar="DIR", help="Folder of the results.", show_default=False),
 ]
-Seeds = Annotated[
-    int,
-    typer.Option(
-        "--seeds",
-        metavar="N",
-        help="How many placements to route; the median of their clocks counts.",
-        parser=lambda text: parse_count("--seeds", text, 1, MOST_SEEDS),
-    ),
-]
 SeedsOrNone = Annotated[
     int,
     typer.Option(

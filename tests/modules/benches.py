@@ -18,6 +18,7 @@ _TECHNIQUES = tuple(name for name, config in TECHNIQUES.items() if config is not
 
 #: Builds for several lights.
 _LIGHTS = {
+    "lights_3": Config(name="lights_3", lights=3),
     "lights_8": Config(name="lights_8", lights=8, highlight_colour=True),
 }
 
@@ -32,7 +33,10 @@ _VARIANTS = (
 )  # fmt: skip
 
 #: The benches of the whole design's control and pipeline, and their top levels.
-_TOPS = {"control": "control_bench", "phong_pipeline": "pipeline_bench"}
+_TOPS = {
+    "control": "control_bench", "phong_pipeline": "pipeline_bench",
+    "lights_pipeline": "pipeline_bench",
+}  # fmt: skip
 
 #: All module benches, small modules first. `primitives` contains all small modules.
 NAMES = ("primitives", *MODULES, *_VARIANTS, *_TOPS, *_TECHNIQUES)
@@ -86,4 +90,5 @@ def module_bench(name: str) -> ModuleBench:
     if name in _TECHNIQUES:
         tests = "tests.modules.phong_pipeline"
         return ModuleBench(name, "pipeline_bench", tests, config=TECHNIQUES[name])
-    return ModuleBench(name, _TOPS[name], f"tests.modules.{name}")
+    config = BUILDS["lights_3"] if name == "lights_pipeline" else DEFAULT
+    return ModuleBench(name, _TOPS[name], f"tests.modules.{name}", config=config)
