@@ -212,7 +212,7 @@ class Config:
     highlight: Format = _unsigned(0, 18)  # W(i) cos(s)**n, rounded before it is coloured
     span_half_vector: bool = False  # each span brings its half vectors: a light at a place
     attenuation: bool = False  # a light that falls with the distance from it
-    depth: Format = _signed(1, 29)  # that distance, interpolated; 0 to 1 are the table's range
+    depth: Format = _signed(1, 29)  # distance from a light, interpolated; 0 to 1 in the table
 
     # -- features ----------------------------------------------------------------------------------
     # A feature that a scene does not need is left out: see model/analysis/pruning.py. The comment
