@@ -164,6 +164,8 @@ class Config:
         reflectance = self.power_method == "curve" or self.weight_jumps
         if reflectance and self.normal_method == "quadratic_spans":
             raise ValueError("normal_method `quadratic_spans` has neither curves nor jumps")
+        if self.attenuation and (self.curve_jumps or self.weight_jumps):
+            raise ValueError("attenuation and jumps cannot be in one build: they share addresses")
 
     def _check_lights(self) -> None:
         """Raise ValueError for lights or units out of range, and for a feature that rtl/lights does
@@ -182,6 +184,10 @@ class Config:
         for f in dataclasses.fields(self):
             if f.name in ONE_LIGHT_ONLY and getattr(self, f.name) != f.default:
                 raise ValueError(f"{f.name} is for builds with one white light")
+        if self.attenuation and (1 << self.weight_index_bits) > self.materials << 4:
+            raise ValueError("the address map has no place for so many intervals of attenuation")
+        if self.attenuation and self.weight_index_bits < 5:
+            raise ValueError("weight_index_bits is below 5: no address for attenuation")
 
     # -- technique ---------------------------------------------------------------------------------
     # phong interpolates normals, gouraud the intensities of vertices; flat holds one intensity per
@@ -226,11 +232,14 @@ class Config:
     intensity: Format = _unsigned(1, 24)  # S of one channel, before it is scaled to the code
 
     # -- lights ------------------------------------------------------------------------------------
-    # 1 light that is not coloured: eq. (3), in rtl/core/; else the sum over lights, in rtl/lights/.
+    # 1 white light at infinity: eq. (3), in rtl/core/; else the sum over lights, in rtl/lights/.
     lights: int = 1  # most lights of a frame, 1 to 8
     units: int = 1  # shading units side by side: 1, 2, 4 or 8, at most `lights`
     highlight_colour: bool = False  # a colour for each light's highlight, or a sum beyond Cp <= 1
     highlight: Format = _unsigned(0, 18)  # W(i) cos(s)**n, rounded before it is coloured
+    span_half_vector: bool = False  # each span brings its half vectors: a light at a place
+    attenuation: bool = False  # a light that falls with the distance from it
+    depth: Format = _signed(1, 29)  # distance from a light, interpolated; 0 to 1 in the table
 
     # -- features ----------------------------------------------------------------------------------
     # A feature that a scene does not need is left out: see model/analysis/pruning.py. The comment
@@ -338,7 +347,14 @@ class Config:
     @property
     def sums_lights(self) -> bool:
         """Whether a pixel is a sum over lights (rtl/lights/), not eq. (3) for one white light."""
-        return self.technique == "phong" and (self.lights > 1 or self.highlight_colour)
+        return self.technique == "phong" and (
+            self.lights > 1 or self.highlight_colour or self.span_half_vector or self.attenuation
+        )
+
+    @property
+    def rounds_highlight(self) -> bool:
+        """Whether W(i) cos(s)**n of a light is rounded, since it is multiplied once more."""
+        return self.highlight_colour or self.attenuation
 
     @property
     def span_units(self) -> int:
@@ -401,5 +417,14 @@ CURVE_BUILDS = {
     "curve": Config(name="curve", power_method="curve"),
     "curve_jumps": Config(
         name="curve_jumps", power_method="curve", curve_jumps=MAX_JUMPS, weight_jumps=MAX_JUMPS
+    ),
+}
+
+#: Builds for one white light: at a place, falling with the distance, and both.
+PLACE_BUILDS = {
+    "placed_light": Config(name="placed_light", span_half_vector=True),
+    "falling_light": Config(name="falling_light", attenuation=True),
+    "placed_falling_light": Config(
+        name="placed_falling_light", span_half_vector=True, attenuation=True
     ),
 }

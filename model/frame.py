@@ -11,6 +11,7 @@ import numpy as np
 
 from phong75.model.arrays import ArrayLike, Flags, Ints, Reals, Spans
 from phong75.model.config import Config
+from phong75.model.places import Falloff, Place
 from phong75.model.reflectance import Curve, jump_count
 
 #: One span: `length` pixels from (x, y) to the right.
@@ -134,6 +135,12 @@ class Frame:
     The length of h should be 1 but for its rounding. two_sided: shade |Zn|. background: codes of
     red, green, blue for the pixels that no span covers. spans: SPAN_DTYPE[n]; start and step are in
     the frame of the first light. further: the other lights, at most 7.
+
+    half_vectors: int64[L, n, 2], (hx, hz) of each of L lights in each span, in place of those of
+    the lights; None if no light is at a place. depths: int64[L, n, 2], start and step in `depth` of
+    the distance from each light. falloff: int64[L, P], the factor in `coefficient` at P equally
+    spaced depths from 0 to 1, constant beyond them. Both are None if no light falls with the
+    distance.
     """
 
     width: int
@@ -144,6 +151,9 @@ class Frame:
     materials: MaterialTable
     spans: Spans
     further: list[FurtherLight] = field(default_factory=list)
+    half_vectors: Ints | None = None
+    depths: Ints | None = None
+    falloff: Ints | None = None
 
     def __repr__(self) -> str:
         pixels = int(np.maximum(self.spans["length"], 1).sum())
@@ -176,10 +186,22 @@ class Frame:
         spans["start"], spans["step"] = light.start, light.step
         return replace(self, half_vector=light.half_vector, spans=spans, further=[])
 
+    def half_vector_of(self, number: int, span: Ints, config: Config) -> tuple[int, ...]:
+        """(hx, hz) of the light `number` in the spans number `span` (int64[m]): two whole numbers,
+        or int64[m] each if spans bring their half vectors."""
+        if self.half_vectors is None:
+            return self.light(number, config).half_vector
+        return tuple(self.half_vectors[number, span].T)
+
     def take(self, rows: Ints | Flags) -> Frame:
         """The frame with the spans number `rows` (int64[m] or bool[n]) only."""
         further = [replace(r, start=r.start[rows], step=r.step[rows]) for r in self.further]
-        return replace(self, spans=self.spans[rows], further=further)
+        half_vectors, depths = (
+            None if a is None else a[:, rows] for a in (self.half_vectors, self.depths)
+        )
+        return replace(
+            self, spans=self.spans[rows], further=further, half_vectors=half_vectors, depths=depths
+        )
 
 
 def with_reflectance(config: Config, frame: Frame) -> Config:
@@ -234,16 +256,20 @@ def fitted(config: Config, frame: Frame, units: int = 1) -> Config:
         if units > 1:
             raise InputError(f"{config.technique} shading has no units: it shades vertices")
         return config
-    if first is None and not frame.further and units == 1:
+    placed, falls = frame.half_vectors is not None, frame.falloff is not None
+    sums = bool(frame.further) or placed or falls
+    if first is None and units == 1 and not sums:
         return config
     if units > frame.lights:
         lights = f"{frame.lights} light{'s' if frame.further else ''}"
         raise InputError(f"{units} units for {lights}: a unit more than lights has nothing to do")
     suffix = f"_lights_{frame.lights}" + (f"_units_{units}" if units > 1 else "")
+    suffix += "_placed" * placed + "_falloff" * falls
     try:
         return replace(
             config, name=config.name + suffix, lights=frame.lights, units=units,
-            highlight_colour=coloured or not frame.further,
+            highlight_colour=coloured or not sums,
+            span_half_vector=placed, attenuation=falls,
         )  # fmt: skip
     except ValueError as error:
         raise InputError(f"a sum over lights is needed, but {error}") from None
@@ -259,6 +285,10 @@ def with_lights(config: Config, frame: Frame) -> Config:
         return fitted(config, frame)
     if frame.lights > config.lights:
         raise InputError(f"{frame.lights} lights in a build for {config.lights}")
+    if frame.falloff is not None and not config.attenuation:
+        raise InputError("a light falls with the distance, which the build leaves out")
+    if frame.half_vectors is not None and config.specular and not config.span_half_vector:
+        raise InputError("a light is at a place, which the build leaves out")
     return with_reflectance(config, frame)
 
 
@@ -285,6 +315,12 @@ class ExactFrame:
     float64[M, 3] of the materials, as in `MaterialTable`. weight, curve: of each of the M
     materials, the scene's own W of cos(i), and the scene's own curve of cos(s) or cos(s)**n.
     further: the lights beside the first.
+
+    places: of all lights; empty if all are at infinity and none falls with the distance. point,
+    point_step: float64[n, 4], (p/w, 1/w) of the surface's point p, w as in `Camera.project`: that
+    and 1/w are linear along a span also in perspective. Where the first light is at a place, start,
+    step, points and places are in the frame of its direction from the middle of the scene, and so
+    are the `turn` and the eye.
     """
 
     start: Reals
@@ -297,10 +333,60 @@ class ExactFrame:
     weight: Sequence[Curve]
     curve: Sequence[Curve]
     further: list[ExactLight] = field(default_factory=list)
+    places: list[Place] = field(default_factory=list)
+    point: Reals = field(default_factory=lambda: np.zeros((0, 4)))
+    point_step: Reals = field(default_factory=lambda: np.zeros((0, 4)))
 
     def __repr__(self) -> str:
         eye = ", ".join(f"{component:.3f}" for component in self.eye)
         return f"ExactFrame(spans: {len(self.start)}, eye: ({eye}))"
+
+
+def half_angle_codes(angle: Reals, config: Config) -> Ints:
+    """Codes int64[n, 2] of (hx, hz) for the angles float64[n] from light to eye, radians."""
+    half = np.stack([np.sin(angle / 2), np.cos(angle / 2)], axis=-1)
+    return config.half_vector.quantize(half)
+
+
+def distance_range(distances: list[Reals], falloff: Falloff | None) -> tuple[float, float]:
+    """The distances at which the table of `falloff` begins and ends: depths 0 and 1.
+
+    These are the smallest and the largest of `distances`, but the first and the last point of the
+    falloff where the factor is constant beyond those: the table has straight lines between equally
+    spaced distances, and a corner within one of them would be cut. No distance gets a depth beyond
+    -1.9 or 1.9, which the word holds.
+    """
+    found = np.concatenate(distances)
+    low, high = (float(found.min()), float(found.max())) if len(found) else (0.0, 1.0)
+    points = falloff.distances if falloff else ()
+    if points and max(low, points[0]) < min(high, points[-1]):
+        begin = max(low, points[0])
+        return begin, max(min(high, points[-1]), begin + max(begin - low, high - begin) / 1.9)
+    return low, high if high > low else low + 1.0
+
+
+def depth_codes(
+    first: Reals, last: Reals, steps: Ints, low: float, high: float, config: Config
+) -> Ints:
+    """Codes int64[n, 2] in `depth`: start and step of the distances along spans.
+
+    first, last: float64[n], at the first and the last pixel. steps: int64[n], pixels minus 1. low,
+    high: the distances that depths of 0 and of 1 stand for. Depths are in the word at both ends.
+    """
+    fmt = config.depth
+    ends = [fmt.quantize((d - low) / (high - low)) for d in (first, last)]
+    slope = np.floor((ends[1] - ends[0]) / np.maximum(steps, 1) + 0.5).astype(np.int64)
+    lowest = -((ends[0] - fmt.min) // np.maximum(steps, 1))
+    highest = (fmt.max - ends[0]) // np.maximum(steps, 1)
+    return np.stack([ends[0], np.clip(slope, lowest, highest)], axis=-1)
+
+
+def falloff_codes(falloff: Falloff | None, low: float, high: float, config: Config) -> Ints:
+    """The factors int64[P] in `coefficient` at P equally spaced distances from `low` to `high`; 1
+    for a light that does not fall with the distance."""
+    distance = np.linspace(low, high, config.weight_points)
+    factor = falloff.factor(distance) if falloff else np.ones_like(distance)
+    return config.coefficient.quantize(factor)
 
 
 def half_vector_codes(eye: ArrayLike, config: Config) -> tuple[int, int]:

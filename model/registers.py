@@ -17,6 +17,8 @@ In a build with curves of cos(s) one more bit stands at the top. If it is 1, the
 {1, zeros, material, line}, the word {step, left} as for W(i). In a build with jumps the fields
 weight_jump and curve_jump hold two words a jump: {above, threshold}, then the amount in
 `coefficient` (u1.16).
+Where lights fall with the distance, interval k of a light's table of factors is at the field
+attenuation + k mod 16 of the material k div 16. The word is {step, left} as for W(i).
 """
 
 from __future__ import annotations
@@ -31,7 +33,7 @@ from phong75.model.reflectance import power_words
 #: green, blue. weight_jump and curve_jump take two for each of MAX_JUMPS jumps.
 FIELDS = {
     "ambient": 0, "diffuse": 3, "exponent": 6, "half_x": 8, "half_z": 9, "control": 10,
-    "highlight": 11, "weight_jump": 16, "curve_jump": 24,
+    "highlight": 11, "weight_jump": 16, "curve_jump": 24, "attenuation": 16,
 }  # fmt: skip
 
 
@@ -71,6 +73,7 @@ def writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
 
     hx, hz = frame.half_vector
     differs = config.specular and (hx, hz) != tuple(config.constant_half_vector)
+    differs = differs and not config.span_half_vector
     write("half_x", hx, differs)
     write("half_z", hz, differs)
     control = frame.two_sided | (frame.lights - 1) << 1
@@ -146,7 +149,9 @@ def _light_writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
     used = np.unique(frame.spans["material"]).tolist()
     for number in range(frame.lights):
         light = frame.light(number, config)
-        if number and config.specular:
+        if frame.falloff is not None or config.attenuation:
+            out += _falloff_writes(number, frame, config)
+        if number and config.specular and not config.span_half_vector:
             for name, code in zip(("half_x", "half_z"), light.half_vector, strict=True):
                 write(number, name, code & half_mask)
         for material in used:
@@ -163,4 +168,18 @@ def _light_writes(frame: Frame, config: Config) -> list[tuple[int, int]]:
                     needed = there or code != neutral
                     if needed and (channel < config.channels or code != codes[0]):
                         write(number, name, code, material, channel)
+    return out
+
+
+def _falloff_writes(number: int, frame: Frame, config: Config) -> list[tuple[int, int]]:
+    """The writes of the factors of the light `number`: 1 at all distances if the frame has none."""
+    points = [config.coefficient.one] * config.weight_points
+    if frame.falloff is not None:
+        points = frame.falloff[number].tolist()
+    above = 1 + config.material_bits + config.weight_index_bits
+    word_mask, out = (1 << word_bits(config)) - 1, []
+    for k in range(config.weight_points - 1):
+        field = (k >> 4) << config.weight_index_bits | (FIELDS["attenuation"] + (k & 15))
+        word = ((points[k + 1] - points[k]) << config.coefficient.bits | points[k]) & word_mask
+        out.append((number << above | 1 << (above - 1) | field, word))
     return out

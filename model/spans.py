@@ -36,7 +36,12 @@ light, both are 0. The other fields are the same in all records of a span, but `
 the last record of the frame has. Line 2 has one key more:
 
     lights          a list with an object a light: {half_vector[2], diffuse[M][3], highlight[M][3]},
-                    where M counts the rows of `materials`, in their order
+                    where M counts the rows of `materials`, in their order; where lights fall with
+                    the distance, `falloff` is the list of factors of each light
+
+If spans bring their half vectors, half_x and half_z of each unit follow the starts and steps of all
+units; if lights fall with the distance, start_depth and step_depth of each unit follow those. The
+names of the further units end in the unit's number, as those of start and step.
 
 For Gouraud shading, x, y and z of start and step are red, green and blue; for grey there is x only.
 For flat shading there is no step. With `Config.spans_carry_squares`, six words of `squared` stand
@@ -116,6 +121,14 @@ def span_fields(config: Config) -> list[SpanField]:
     if config.spans_carry_squares:
         widths = [(f"{what}_z", config.normal.bits) for what in carried]
         widths += [(name, config.squared.bits) for name in quadratic_spans.NAMES]
+    for unit in range(config.span_units) if config.sums_lights else ():
+        end = f"_{unit}" if unit else ""
+        if config.span_half_vector:
+            widths += [(f"half_{axis}{end}", config.half_vector.bits) for axis in "xz"]
+    for unit in range(config.span_units) if config.sums_lights else ():
+        end = f"_{unit}" if unit else ""
+        if config.attenuation:
+            widths += [(f"{what}_depth{end}", config.depth.bits) for what in ("start", "step")]
     widths += [
         ("x", config.coordinate_bits),
         ("y", config.coordinate_bits),
@@ -145,13 +158,13 @@ def turns(frame: Frame, config: Config) -> int:
 
 
 def illegal_spans(frame: Frame, config: Config) -> Flags:
-    """Which spans the RTL flags as illegal, bool[n]: a component of the normal leaves its format
-    between the first and the last pixel, for any light. With `normal_order` 2 also those in which
-    the change from one of these pixels to the next leaves the format (see `bent_beyond`).
+    """Which spans the RTL flags as illegal, bool[n]: a component of the normal or a depth leaves
+    its format between the first and the last pixel, for any light. With `normal_order` 2 also those
+    in which the change from one of these pixels to the next leaves the format (see `bent_beyond`).
     """
     if config.normal_order == 2:
         return bent_beyond(frame.spans, config)
-    # The components are linear, so both ends decide.
+    # Components and depths are linear, so both ends decide.
     steps = np.maximum(frame.spans["length"].astype(np.int64), 1) - 1
     illegal = np.zeros(len(frame.spans), bool)
     for number in range(frame.lights):
@@ -159,6 +172,9 @@ def illegal_spans(frame: Frame, config: Config) -> Flags:
         end = light.start + steps[:, None] * light.step
         legal = config.normal.contains(light.start) & config.normal.contains(end)
         illegal |= np.any(~legal, axis=1)
+        if frame.depths is not None:
+            start, step = frame.depths[number].T
+            illegal |= ~(config.depth.contains(start) & config.depth.contains(start + steps * step))
     return illegal
 
 
@@ -229,6 +245,7 @@ def pack_frame(frame: Frame, config: Config) -> bytes:
         return pack(frame.spans, config, frame.half_vector)
     units, count = config.units, turns(frame, config)
     nothing = np.zeros((len(frame.spans), 3), np.int64)
+    every = np.arange(len(frame.spans))
     records = np.zeros((len(frame.spans), count, record_bits(config) // 8), np.uint8)
     for turn in range(count):
         lights = [
@@ -236,11 +253,23 @@ def pack_frame(frame: Frame, config: Config) -> bytes:
             for number in range(turn * units, (turn + 1) * units)
         ]
         values = [(v.start, v.step) if v else (nothing, nothing) for v in lights]
+        further = {}
+        for unit, number in enumerate(range(turn * units, (turn + 1) * units)):
+            end, there = f"_{unit}" if unit else "", number < frame.lights
+            if config.span_half_vector:
+                half = frame.half_vector_of(number, every, config) if there else (0, 0)
+                for axis, code in zip("xz", half, strict=True):
+                    further[f"half_{axis}{end}"] = np.broadcast_to(code, len(every))
+            if config.attenuation:
+                depths = nothing[:, :2]
+                if there and frame.depths is not None:
+                    depths = frame.depths[number]
+                further[f"start_depth{end}"], further[f"step_depth{end}"] = depths.T
         spans = frame.spans.copy()
         spans["start"], spans["step"] = values[0]
         if turn < count - 1:
             spans["last"] = False
-        body = _pack(spans, config, values)
+        body = _pack(spans, config, values, further)
         records[:, turn] = np.frombuffer(body, np.uint8).reshape(len(spans), -1)
     return records.tobytes()
 
@@ -263,14 +292,14 @@ def _pack(
     spans: Spans,
     config: Config,
     values: list[tuple[Ints, Ints]],
-    squares: dict[str, Ints] | None = None,
+    signed_fields: dict[str, Ints] | None = None,
 ) -> bytes:
-    """The records of `spans`. values: start and step of each unit, int64[n, 3]. squares: {field:
-    codes} of `quadratic_spans`."""
+    """The records of `spans`. values: start and step of each unit, int64[n, 3]. signed_fields:
+    {field: codes} of what neither `spans` nor `values` have, such as those of `quadratic_spans`."""
     words = np.zeros((len(spans), record_bits(config) // _WORD), np.uint64)
     for field in span_fields(config):
-        square = (squares or {}).get(field.name)
-        value, signed = _column(spans, field.name, values) if square is None else (square, True)
+        given = (signed_fields or {}).get(field.name)
+        value, signed = _column(spans, field.name, values) if given is None else (given, True)
         low = -(1 << (field.bits - 1)) if signed else 0
         if len(value) and not (low <= value.min() and value.max() < low + (1 << field.bits)):
             raise ValueError(f"a span's {field.name} does not fit {field.bits} bits")
@@ -291,8 +320,9 @@ def unpack(body: bytes, config: Config) -> Spans:
     return _unpack(body, config)[0]
 
 
-def _unpack(body: bytes, config: Config) -> tuple[Spans, list[tuple[Ints, Ints]]]:
-    """The spans of the records in `body`, and start and step of each unit. Raises InputError."""
+def _unpack(body: bytes, config: Config) -> tuple[Spans, list[tuple[Ints, Ints]], dict[str, Ints]]:
+    """The spans of the records in `body`, start and step of each unit, and the further fields of
+    lights at a place or that fall with the distance, {name: int64[n]}. Raises InputError."""
     if config.spans_carry_squares:
         raise InputError("spans of squares cannot be read back")
     words = np.frombuffer(body, ">u8").reshape(-1, record_bits(config) // _WORD)[:, ::-1]
@@ -303,13 +333,17 @@ def _unpack(body: bytes, config: Config) -> tuple[Spans, list[tuple[Ints, Ints]]
     values = [(spans["start"], spans["step"])]
     for _ in range(1, config.span_units):
         values.append((np.zeros((len(words), 3), np.int64), np.zeros((len(words), 3), np.int64)))
+    further: dict[str, Ints] = {}
     for field in fields:
         value = (_bits(words, field.lsb) & np.uint64((1 << field.bits) - 1)).astype(np.int64)
-        column, signed = _column(spans, field.name, values)
+        if field.name.startswith("half_") or "_depth" in field.name:
+            column, signed = further.setdefault(field.name, np.zeros_like(value)), True
+        else:
+            column, signed = _column(spans, field.name, values)
         if signed:
             value -= (value >> (field.bits - 1)) << field.bits
         column[:] = value
-    return _implied(spans, config), values
+    return _implied(spans, config), values, further
 
 
 def _implied(spans: Spans, config: Config) -> Spans:
@@ -399,6 +433,10 @@ def _light_rows(frame: Frame, config: Config, rows: list[dict[str, Any]]) -> lis
                 "highlight": light.highlight[used].tolist(),
             }
         )
+        if config.attenuation:
+            one = np.full(config.weight_points, config.coefficient.one)
+            points = one if frame.falloff is None else frame.falloff[number]
+            lights[-1]["falloff"] = points.tolist()
     return lights
 
 
@@ -424,7 +462,7 @@ def read_spans(path: str | Path, config: Config) -> Frame:
 
 
 def written_for(path: str | Path, config: Config) -> Config:
-    """`config` with the lights and units of the build that the span file `path` is for.
+    """`config` with the lights, units and places of the build that the span file `path` is for.
 
     A file that cannot be read, or that has no lights, gives `config`; `read_spans` says what is
     wrong with it.
@@ -434,10 +472,12 @@ def written_for(path: str | Path, config: Config) -> Config:
         lights, fields = header["lights"], header["record"]["fields"]
         one = config.coefficient.one
         coloured = any(c != one for light in lights for row in light["highlight"] for c in row)
+        placed, falls = "half_x" in fields, "start_depth" in fields
         return replace(
             config, name=f"{config.name}_lights_{len(lights)}", lights=len(lights),
             units=sum(name.startswith("start_x") for name in fields),
-            highlight_colour=coloured or len(lights) == 1,
+            highlight_colour=coloured or not (len(lights) > 1 or placed or falls),
+            span_half_vector=placed, attenuation=falls,
         )  # fmt: skip
     except (OSError, InputError, KeyError, TypeError, ValueError):
         return config
@@ -498,7 +538,7 @@ def _frame(header: dict[str, Any], body: bytes, config: Config) -> Frame:
         raise InputError(
             f"{count} spans of {size} bytes are announced, but {len(body)} bytes follow line 2"
         )
-    records, values = _unpack(body, config)
+    records, values, fields = _unpack(body, config)
     spans = records[each - 1 :: each].copy()  # the last record has `last`
     if config.sums_lights:
         _read_turns(spans, records, values, further, each)
@@ -511,9 +551,29 @@ def _frame(header: dict[str, Any], body: bytes, config: Config) -> Frame:
     _reject("names a material that line 2 does not give", ~named[spans["material"]])
     _reject("is marked as the last, but more follow", spans["last"][:-1])
     _reject("is the last, but not marked so", ~spans["last"][-1:], len(spans) - 1)
-    return Frame(
+    frame = Frame(
         width, height, (hx, hz), header["two_sided"], (red, green, blue), materials, spans, further
     )
+    if config.span_half_vector:
+        frame.half_vectors = _of_lights(fields, ("half_x", "half_z"), frame, each, config)
+        zero = (frame.half_vectors == 0).all(axis=2)
+        _reject("a half vector has length zero", np.any(zero, axis=0))
+    if config.attenuation:
+        frame.depths = _of_lights(fields, ("start_depth", "step_depth"), frame, each, config)
+        frame.falloff = np.array([light["falloff"] for light in header["lights"]], np.int64)
+    return frame
+
+
+def _of_lights(
+    fields: dict[str, Ints], names: tuple[str, str], frame: Frame, each: int, config: Config
+) -> Ints:
+    """Two fields of the records for each light, int64[L, n, 2]. each: records of a span."""
+    found = np.zeros((frame.lights, len(frame.spans), 2), np.int64)
+    for number in range(frame.lights):
+        turn, unit = divmod(number, config.units)
+        for k, name in enumerate(names):
+            found[number, :, k] = fields[name + (f"_{unit}" if unit else "")][turn::each]
+    return found
 
 
 def _lights(header: dict[str, Any], table: MaterialTable, config: Config) -> list[FurtherLight]:
@@ -532,7 +592,11 @@ def _lights(header: dict[str, Any], table: MaterialTable, config: Config) -> lis
     found = []
     for number, light in enumerate(lights):
         name = f"lights[{number}]"
-        _keys(name, light, ["half_vector", "diffuse", "highlight"])
+        falloff = ["falloff"] if config.attenuation else []
+        _keys(name, light, ["half_vector", "diffuse", "highlight", *falloff])
+        if falloff:
+            points, one = light["falloff"], config.coefficient.one
+            _integers(f"{name}.falloff", points, config.weight_points, 0, one)
         hx, hz = _half_vector(f"{name}.half_vector", light["half_vector"], config)
         columns = {}
         for key in ("diffuse", "highlight"):

@@ -65,7 +65,10 @@ def header(config: Config) -> str:
     lines.append(f"`define PHONG_RECORD_BITS {record_bits(config)}")
     lines.append(f"`define PHONG_ADDRESS_BITS {address_bits(config)}")
     lines.append(f"`define PHONG_MAX_JUMPS {MAX_JUMPS}")
-    for name in ("sums_lights", "turns", "turn_bits", "light_bits", "segment_bits", "has_curves"):
+    for name in (
+        "sums_lights", "rounds_highlight", "turns", "turn_bits", "light_bits", "segment_bits",
+        "has_curves",
+    ):  # fmt: skip
         lines.append(f"`define PHONG_{name.upper()} {int(getattr(config, name))}")
     lines += [f"`define PHONG_FIELD_{name.upper()} {index}" for name, index in FIELDS.items()]
     lines += [f"`define PHONG_{t.name.upper()}_TABLE {_constant(t)}" for t in tables(config)]

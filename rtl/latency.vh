@@ -284,16 +284,23 @@
 `define PHONG_LIGHT_HIGHLIGHT_LATENCY \
   ( `PHONG_HIGHLIGHT_LATENCY + `PHONG_POWER_LATENCY \
   + `PHONG_MULTIPLIER_LATENCY        /* W times the power */ \
-  + (`PHONG_HIGHLIGHT_COLOUR ? `PHONG_ROUND_SATURATE_LATENCY : 0) )
+  + (`PHONG_ROUNDS_HIGHLIGHT ? `PHONG_ROUND_SATURATE_LATENCY : 0) )
+
+// From N.L and W(i) cos(s)^n to both times the factor of the distance.
+`define PHONG_LIGHT_ATTENUATION_LATENCY \
+  ( `PHONG_MULTIPLIER_LATENCY        /* scale: products */ \
+  + `PHONG_ROUND_SATURATE_LATENCY )
 
 `define PHONG_LIGHT_TABLE_LATENCY \
   ( `PHONG_TURNS > 1 ? `PHONG_RAM_LATENCY : `PHONG_SMALL_RAM_LATENCY )
 
 // From the unit normal to the products with the colours. A white highlight has none and arrives
-// with the diffuse product.
+// with the diffuse product; if it is rounded, it waits for that product.
 `define PHONG_LIGHT_COLOUR_LATENCY \
-  ( !`PHONG_SPECULAR ? `PHONG_LIGHT_TABLE_LATENCY : \
-    `PHONG_LIGHT_HIGHLIGHT_LATENCY - (`PHONG_HIGHLIGHT_COLOUR ? 0 : `PHONG_MULTIPLIER_LATENCY) )
+  ( (!`PHONG_SPECULAR ? `PHONG_LIGHT_TABLE_LATENCY : \
+     `PHONG_LIGHT_HIGHLIGHT_LATENCY \
+     - (`PHONG_ROUNDS_HIGHLIGHT ? 0 : `PHONG_MULTIPLIER_LATENCY)) \
+  + (`PHONG_ATTENUATION ? `PHONG_LIGHT_ATTENUATION_LATENCY : 0) )
 
 `define PHONG_LIGHT_TERMS_LATENCY \
   ( `PHONG_MULTIPLIER_LATENCY        /* products with the colours */ \

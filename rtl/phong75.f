@@ -31,6 +31,8 @@ lights/lights_unit.v
 lights/light_map.v
 lights/context_interpolator.v
 lights/light_align.v
+lights/light_attenuation.v
+lights/span_word.v
 lights/turn_hold.v
 lights/held_root.v
 lights/light_scale.v

@@ -9,7 +9,14 @@ import re
 from collections.abc import Iterable
 
 from phong75.model.analysis.pruning import BY_HAND
-from phong75.model.config import CURVE_BUILDS, DEFAULT, LIGHT_BUILDS, TECHNIQUES, Config
+from phong75.model.config import (
+    CURVE_BUILDS,
+    DEFAULT,
+    LIGHT_BUILDS,
+    PLACE_BUILDS,
+    TECHNIQUES,
+    Config,
+)
 from phong75.model.frame import InputError
 from phong75.model.studies import methods
 
@@ -43,6 +50,7 @@ def _groups() -> dict[str, dict[str, Config]]:
         },
         "with curves by table, or jumps": CURVE_BUILDS,
         "with several lights": LIGHT_BUILDS,
+        "with a light at a place": PLACE_BUILDS,
         "points of `phong75 sweep`": {n: c for n, c in sweep.items() if n != DEFAULT.name},
     }
 

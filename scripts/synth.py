@@ -13,7 +13,7 @@ from pathlib import Path
 from rich.table import Table
 
 from phong75.model.analysis.pruning import prune
-from phong75.model.config import CURVE_BUILDS, DEFAULT, LIGHT_BUILDS, Config
+from phong75.model.config import CURVE_BUILDS, DEFAULT, LIGHT_BUILDS, PLACE_BUILDS, Config
 from phong75.model.frame import InputError, fitted
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
@@ -78,7 +78,7 @@ def figures(report: dict) -> dict:
 
 
 #: {record: the builds that it has a row for}.
-BUILDS = {"lights": LIGHT_BUILDS, "reflectance": CURVE_BUILDS}
+BUILDS = {"lights": LIGHT_BUILDS, "places": PLACE_BUILDS, "reflectance": CURVE_BUILDS}
 
 
 def record_of(config: Config) -> str:

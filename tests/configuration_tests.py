@@ -29,7 +29,7 @@ from phong75.model.registers import address_bits, writes
 from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import bent_beyond, illegal_spans, turns
 from phong75.model.studies.methods import CONFIGS
-from phong75.model.studies.random_frames import random_frame, random_lights
+from phong75.model.studies.random_frames import placed, random_frame, random_lights
 from phong75.model.twin.core.register_map import unsupported_write, vanishing_exponent
 from phong75.model.twin.lights.light_map import unsupported_light_write
 from phong75.model.twin.pruning.span_guard import span_guard
@@ -603,6 +603,35 @@ def _lights_without(**left_out) -> ConfigurationTest:
     )  # fmt: skip
 
 
+def _places(
+    lights: int, units: int, half_vectors: bool, falls: bool, coloured: bool, **left_out
+) -> ConfigurationTest:
+    """Frames in which spans bring half vectors, or distances, on a build for them."""
+    config = several(
+        lights, units, coloured, span_half_vector=half_vectors, attenuation=falls, **left_out
+    )
+
+    def frame(spans: int, longest: int, count: int, two_sided: bool = False) -> Frame:
+        seed = [SEED, spans, longest, count]
+        made = random_lights(seed, spans, longest, count, two_sided, coloured)
+        if not config.specular:
+            dull(made, np.random.default_rng(SEED))
+        return placed(made, seed, half_vectors, falls)
+
+    most, pixel = frame(200, 7, lights, True), frame(200, 1, lights)
+    wild = frame(120, 9, lights)
+    if falls:
+        wild.depths[:, ::7, 1] = C.depth.max
+    jobs = [
+        SimJob(most), SimJob(most, idle=100, stall=64, seed=SEED), SimJob(pixel), SimJob(wild),
+        SimJob(most, stop_after=170, stall=100), SimJob(pixel, reset_first=True, idle=90),
+    ]  # fmt: skip
+    if lights > 1:
+        jobs.append(SimJob(frame(60, 9, 1), stall=50))
+    jobs.append(SimJob(most, writes=_odd_light_writes(most, config)))
+    return ConfigurationTest(config, *jobs)
+
+
 #: {name: (lights, units, whether highlights have colours)}.
 LIGHTS = {
     "lights 3": (3, 1, False), "lights 8 coloured": (8, 1, True), "lights 5 on 2": (5, 2, True),
@@ -717,6 +746,12 @@ CONFIGURATION_TESTS: dict[str, Callable[[], ConfigurationTest]] = {
     "narrow": lambda: _of(*narrow()),
     "colour_12": _wide,
     **{name: functools.partial(_lights, *what) for name, what in LIGHTS.items()},
+    "placed light": lambda: _places(1, 1, True, False, False),
+    "placed lights 3": lambda: _places(3, 1, True, True, True),
+    "placed lights 5 on 2": lambda: _places(5, 2, True, True, False),
+    "falling light": lambda: _places(1, 1, False, True, False),
+    "falling light coloured": lambda: _places(1, 1, False, True, True),
+    "falling light matte": lambda: _places(1, 1, True, True, False, specular=False),
     "lights matte": lambda: _lights_without(specular=False, two_sided=False),
     "lights cosine": lambda: _lights_without(
         power_function=False, power_bypass=False, log_octaves=False, ambient=False

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from phong75.model import twin
 from phong75.model.analysis import error_budget, metrics, pruning, reference
 from phong75.model.config import DEFAULT, TECHNIQUES, Config
-from phong75.model.frame import SPAN_DTYPE, InputError, fitted
+from phong75.model.frame import SPAN_DTYPE, ExactFrame, InputError, fitted
 from phong75.model.front import mid_edge_normals as rules
 from phong75.model.front import scene_to_spans, shapes
 from phong75.model.front.camera import Camera, view_axes
@@ -285,10 +285,13 @@ def test_what_no_span_can_hold_becomes_single_pixels():
     segment.y[:] = 4
     triangles.value[0, :, 3:] = (1.0, 0, 0)
     triangles.value[0, 1, 3:] = (-1.0, 0, 0)
-    gentle = scene_to_spans._spans(triangles, segment, DEFAULT, "quadratic")
+    exact = ExactFrame(*[np.zeros((0, 3))] * 7, [], [])  # without a light at a place
+    gentle = scene_to_spans._spans(triangles, segment, DEFAULT, "quadratic", exact)
     assert len(gentle[0]) == 1
     triangles.value *= 40
-    spans, start, step, bend = scene_to_spans._spans(triangles, segment, DEFAULT, "quadratic")
+    spans, start, step, bend = scene_to_spans._spans(
+        triangles, segment, DEFAULT, "quadratic", exact
+    )
     assert spans["x"].tolist() == [0, 1, 2, 3] and (spans["length"] == 1).all()
     assert not step.any() and not bend.any() and not spans["bend"].any()
     k = np.arange(4)[:, None]

@@ -49,7 +49,9 @@ def test_bundled_scenes():
     assert set(bundled_scenes()) == {
         "cone", "pyramid", "sphere", "still_life", "teapot", "torus",
     }  # fmt: skip
-    assert set(technique_scenes()) == {"coarse_torus", "coloured_lights", "lamps", "toon"}
+    assert set(technique_scenes()) == {
+        "coarse_torus", "coloured_lights", "lamps", "near_light", "toon", "warnock",
+    }  # fmt: skip
     for name in (*bundled_scenes(), *technique_scenes()):
         scene = load_scene(name)
         assert (scene.name, scene.width, scene.height) == (name, 640, 480)

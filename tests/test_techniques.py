@@ -89,7 +89,7 @@ def test_vertex_intensities_are_those_of_the_pipeline_and_within_its_bound():
     normal = rng.normal(size=(50_000, 3))
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     material = np.zeros(len(normal), np.int64)
-    s = intensities(normal, material, frame, GOURAUD)
+    s = intensities([normal], material, frame, GOURAUD)
     codes = shade(C.normal.quantize(normal).T, material, frame).T
     assert (metrics.rounded(255 * s) == codes).all()
     exact = C.normal.quantize(normal).astype(float)

@@ -257,8 +257,8 @@ def cosine(
 def half_vector_cross(
     half_vector: ArrayLike, config: Config, tilt: float = 0.0, reach: float | None = None
 ) -> tuple[float, float]:
-    """Error of w as two parts (relative, absolute); half_vector: its codes (hx, hz). tilt: see
-    `direction`.
+    """Error of w as two parts (relative, absolute); half_vector: its codes (hx, hz), or those of
+    several spans, int[n, 2], over which each part is the largest. tilt: see `direction`.
 
     Relative: the length of the unit normal, and |h| - 1.
     Absolute, for `dot_first`: the direction; the components of the cross product of a mantissa (1/2
@@ -268,20 +268,23 @@ def half_vector_cross(
     the rounding of the two components of w.
     """
     h = config.half_vector.real(half_vector)
-    norm = float(np.hypot(*h))
-    hx, hz = np.abs(h)
+    norm = np.hypot(h[..., 0], h[..., 1])
+    hx, hz = np.abs(h[..., 0]), np.abs(h[..., 1])
     half = _round(config.unit)
+    off = float(np.max(np.abs(norm - 1)))
     if config.normal_method == "dot_first":
         rounding = np.sqrt(2) * (config.mantissa.lsb / 0.5 + half)
-        return length(config) + abs(norm - 1), float(norm * direction(config, tilt) + rounding)
-    components = half * max(np.hypot(2 * hz, hx + hz), np.hypot(hz, hx + hz + max(hx, hz)))
+        return length(config) + off, float(np.max(norm * direction(config, tilt) + rounding))
+    components = half * np.maximum(
+        np.hypot(2 * hz, hx + hz), np.hypot(hz, hx + hz + np.maximum(hx, hz))
+    )
     if reach is None:
         absolute = norm * direction(config, tilt) + components + np.sqrt(2) * half
-        return length(config) + abs(norm - 1), float(absolute)
+        return length(config) + off, float(np.max(absolute))
     if reach > 1.4:
-        components *= 2
+        components = 2 * components
     absolute = reach * norm * direction(config) + components + np.sqrt(2) * half
-    return held_length(config) + abs(norm - 1), float(absolute)
+    return held_length(config) + off, float(np.max(absolute))
 
 
 def quadratic_versine(v: ArrayLike, config: Config, square: float) -> Reals:
@@ -461,6 +464,21 @@ def weight(
     return steepest * cosine(config, square, tilt, reach) + _round(config.weight)
 
 
+def attenuated(error: float, most: float, number: int, frame: Frame, config: Config) -> float:
+    """Error of a word of the light `number` (u0.18) times the factor of the distance.
+
+    error: of the word, which is at most `most`. The distance is cut to 18 bits, which moves the
+    factor by less than the steepest line of its table times that bit; then the factor is rounded,
+    and so is the product. A product of words below 1 and at most 1 is not clamped.
+    """
+    if not config.attenuation or frame.falloff is None:
+        return error
+    points = config.coefficient.real(frame.falloff[number])
+    steepest = float(np.abs(np.diff(points)).max()) * (len(points) - 1)
+    factor = steepest * config.cosine.lsb + _round(config.weight)
+    return float(points.max()) * error + (most + error) * factor + _round(config.cosine)
+
+
 def rows(
     material: int, frame: Frame, config: Config = DEFAULT, tilt: float | None = 0.0
 ) -> list[BudgetRow]:
@@ -560,12 +578,17 @@ def light_rows(material: int, frame: Frame, config: Config, reach: list[float]) 
     diffuse, specular = np.zeros(3), np.zeros(3)
     for number, its_reach in enumerate([None, *reach]):
         light = frame.light(number, config)
-        diffuse += real(light.diffuse[material]) * cosine(config, reach=its_reach)
+        half_vectors: ArrayLike = light.half_vector
+        if frame.half_vectors is not None and len(frame.spans):
+            half_vectors = np.unique(frame.half_vectors[number], axis=0)
+        error = cosine(config, reach=its_reach)
+        diffuse += real(light.diffuse[material]) * attenuated(error, 1.0, number, frame, config)
         if w > 0:
-            error = w * highlight(material, light.half_vector, frame, config, reach=its_reach)
+            error = w * highlight(material, half_vectors, frame, config, reach=its_reach)
             error += weight(points, config, reach=its_reach)
-            if config.highlight_colour:
+            if config.rounds_highlight:
                 error += _round(config.highlight)
+            error = attenuated(error, w, number, frame, config)
             specular += real(light.highlight[material]) * error
     worst = int(np.argmax(diffuse + specular))
     terms = [

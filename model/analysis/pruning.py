@@ -266,10 +266,13 @@ class _Pruner:
                 )  # fmt: skip
 
     def lights(self) -> None:
-        """How many lights, and whether their highlights have colours."""
+        """How many lights, whether their highlights have colours, and where the lights are."""
         config, count = self.config, self.frame.lights
+        placed = self.frame.half_vectors is not None and self.specular
+        falls = self.frame.falloff is not None
         # One light with a sum beyond 1 needs the wide sum of a build for several.
-        least = count if count > 1 or config.highlight_colour else 2
+        alone = config.highlight_colour or (placed and config.span_half_vector) or falls
+        least = count if count > 1 or alone else 2
         self.decide(
             "lights", least == config.lights, f"{count} light{'s' if count > 1 else ''}",
             "contexts of the interpolators, entries of the tables", without=least,
@@ -281,6 +284,19 @@ class _Pruner:
             "no highlight" if not self.specular else "decides the rounding of the highlight",
             "product with ks Ls in each channel",
         )  # fmt: skip
+        if config.span_half_vector:
+            why = "no highlight" if not self.specular else "a light is at a place"
+            self.decide(
+                "span_half_vector", placed,
+                why if self.frame.half_vectors is not None else "every light is at infinity",
+                "half vectors that pass beside the normals",
+            )  # fmt: skip
+        if config.attenuation:
+            why = "a light falls" if falls else "no light falls"
+            self.decide(
+                "attenuation", falls, f"{why} with the distance",
+                "interpolator of the distance, table of factors, two products",
+            )  # fmt: skip
 
     def constants(self) -> None:
         """Values that are the same in the whole frame."""

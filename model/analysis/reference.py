@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from phong75.model import places
 from phong75.model.arrays import ArrayLike, Ints, Reals, Spans
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import ExactFrame, Frame
@@ -82,20 +83,22 @@ def shade_lights(
     highlight: Reals,
     weight: Reals | Function,
     exponent: Reals | Function,
-    eyes: Reals,
+    eyes: Sequence[Reals],
     two_sided: bool,
     white: int = DEFAULT.white,
+    factors: Sequence[Reals | float] | None = None,
 ) -> Reals:
     """The code white clamp(I, 0, 1), float64[n, 3], of the illumination model with several lights:
 
-    I = e + ka Ia + sum over lights of (ka La + kd Ld (N.L) + ks Ls W(i) (R.V)**n).
+    I = e + ka Ia + sum over lights of (ka La + f (kd Ld (N.L) + ks Ls W(i) (R.V)**n)).
 
     vectors: float64[L, n, 3], the normal in the frame of each of L lights, divided by the length of
     the first one: unit vectors, but for the rounding of the ports. Components beyond 1 count as 1.
     material: int64[n]. ambient: float64[M, 3], the part without a direction. diffuse, highlight:
     float64[L, M, 3], kd Ld and ks Ls. weight: float64[M, P], exponent: float64[M], as in `shade`;
     or functions of the pixels.
-    eyes: float64[L, 3]. two_sided: shade |N.L| of each light.
+    eyes: unit vectors in the frame of each light, float64[3] or [n, 3]. two_sided: shade |N.L| of
+    each light. factors: f of each light, float64[n] or a number; by default 1.
 
     R.V is 2 (N.L) (N.V) - L.V for a unit vector N. For another length it is continued as
     2 (N.L) (N.V) + 1 - (1 + L.V) |N|**2, which is 1 - 2 (x**2 + y**2) with x and y of N x H.
@@ -103,14 +106,17 @@ def shade_lights(
     total = ambient[material]
     weight = weight if callable(weight) else weight[material]
     exponent = exponent if callable(exponent) else exponent[material]
-    for n, kd, ks, eye in zip(np.clip(vectors, -1, 1), diffuse, highlight, eyes, strict=True):
+    factors = factors if factors is not None else [1.0] * len(vectors)
+    for n, kd, ks, eye, factor in zip(
+        np.clip(vectors, -1, 1), diffuse, highlight, eyes, factors, strict=True
+    ):
         cos_i = np.abs(n[:, 2]) if two_sided else n[:, 2]
         lit = (cos_i > 0)[:, None]
         along = (n * eye).sum(axis=1)
-        cos_s = 2 * n[:, 2] * along + 1 - (1 + eye[2]) * (n**2).sum(axis=1)
+        cos_s = 2 * n[:, 2] * along + 1 - (1 + eye[..., 2]) * (n**2).sum(axis=1)
         specular = _weight(weight, cos_i) * _highlight(exponent, cos_s)
         terms = kd[material] * cos_i[:, None] + ks[material] * specular[:, None]
-        total = total + np.where(lit, terms, 0)
+        total = total + np.where(lit, terms, 0) * np.broadcast_to(factor, len(cos_i))[:, None]
     return white * np.clip(total, 0, 1)
 
 
@@ -120,9 +126,7 @@ def _pixels(spans: Spans, start: Reals, step: Reals, bend: Reals) -> tuple[Reals
     start, step, bend: float64[spans, 3], value at the first pixel, change to the second, and growth
     of that change per pixel: Newton's forward differences of a parabola.
     """
-    length = np.maximum(spans["length"], 1)
-    span = np.repeat(np.arange(len(spans)), length)
-    k = np.arange(len(span)) - np.repeat(np.cumsum(length) - length, length)
+    span, k = _span_of_pixels(spans)
     value = start[span] + k[:, None] * step[span]
     if bend.any():
         # Whole numbers and fractions apart: both sums are then exact for the codes of legal spans.
@@ -131,10 +135,31 @@ def _pixels(spans: Spans, start: Reals, step: Reals, bend: Reals) -> tuple[Reals
     return value, spans["material"][span]
 
 
+def _span_of_pixels(spans: Spans) -> tuple[Ints, Ints]:
+    """The span of each pixel of `spans`, and the number of the pixel in it, int64[n] each."""
+    length = np.maximum(spans["length"], 1)
+    span = np.repeat(np.arange(len(spans)), length)
+    return span, np.arange(len(span)) - np.repeat(np.cumsum(length) - length, length)
+
+
 def _differences(spans: Spans, config: Config) -> list[Reals]:
     """Start, step and bend of `spans`, float64[spans, 3] each, in units of the LSB of `normal`."""
     bend = np.ldexp(spans["bend"].astype(float), -config.bend_fraction_bits)
     return [spans["start"].astype(float), spans["step"].astype(float), bend]
+
+
+def _factors(frame: Frame, config: Config) -> list[Reals] | None:
+    """The factor of each light at each pixel, float64[n] each, from the depths at the ports and the
+    points of the table, straight between them; None if no light falls with the distance."""
+    if frame.falloff is None or frame.depths is None:
+        return None
+    span, k = _span_of_pixels(frame.spans)
+    at = np.linspace(0, 1, frame.falloff.shape[1])
+    factors = []
+    for its, points in zip(frame.depths, frame.falloff, strict=True):
+        depth = config.depth.real(its[span, 0] + k * its[span, 1])
+        factors.append(np.interp(depth, at, config.coefficient.real(points)))
+    return factors
 
 
 def eye_of(half_vector: ArrayLike) -> Reals:
@@ -202,16 +227,21 @@ def render(frame: Frame, config: Config = DEFAULT, sides: Sides | None = None) -
     normal, material = _pixels(frame.spans, *differences)
     table, real = frame.materials, config.coefficient.real
     weight, power = _functions(frame, material, config, sides)
-    if config.sums_lights or frame.further or table.highlight is not None:
+    placed = frame.half_vectors is not None or frame.falloff is not None
+    if config.sums_lights or frame.further or table.highlight is not None or placed:
         lights = [frame.light(number, config) for number in range(frame.lights)]
+        span = _span_of_pixels(frame.spans)[0]
+        eyes = [
+            eye_of(np.stack(frame.half_vector_of(number, span, config)))
+            for number in range(frame.lights)
+        ]
         return shade_lights(
             shared_length(frame), material, real(table.ambient),
             np.stack([real(light.diffuse) for light in lights]),
             np.stack([real(light.highlight) for light in lights]),
             weight if callable(weight) else real(table.weight),
             power if callable(power) else config.exponent.real(table.exponent),
-            np.stack([eye_of(light.half_vector) for light in lights]), frame.two_sided,
-            config.white,
+            eyes, frame.two_sided, config.white, _factors(frame, config),
         )  # fmt: skip
     return shade(
         normal, real(table.ambient)[material], real(table.diffuse)[material], weight, power,
@@ -253,7 +283,12 @@ def render_exact(
     normal, m = _pixels(frame.spans, exact.start, exact.step, exact.bend)
     if config.technique != "phong":
         return config.white * np.clip(normal, 0, 1)
-    return shade_exact(normal, m, exact, frame.two_sided, config.white, sides)
+    points = None
+    if exact.places:
+        span, k = _span_of_pixels(frame.spans)
+        p = exact.point[span] + k[:, None] * exact.point_step[span]
+        points = p[:, :3] / p[:, 3:]
+    return shade_exact(normal, m, exact, frame.two_sided, config.white, sides, points)
 
 
 def _by_material(curves: Sequence[Curve], material: Ints, side: Function) -> Function:
@@ -280,16 +315,20 @@ def shade_exact(
     two_sided: bool,
     white: int = DEFAULT.white,
     sides: Sides | None = None,
+    points: Reals | None = None,
 ) -> Reals:
     """The code white clamp(S, 0, 1) of normals before any rounding, float64[n, 3].
 
     normal: float64[n, 3], any length, in the first light's frame. material: int64[n]. sides: see
-    `undecided`.
+    `undecided`. points: float64[n, 3], those of the surface, from which a light at a place has its
+    own direction and distance; needed if `exact` has places.
     """
     m, further = material, exact.further
     shift = sides or Sides(0.0, np.zeros_like)
     weight = _by_material(exact.weight, m, lambda cos_i: np.full_like(cos_i, shift.weight))
     power = _by_material(exact.curve, m, lambda cos_s: -shift.versine(np.clip(1 - cos_s, 0, 1)))
+    if points is not None and exact.places:
+        return _shade_places(normal, material, exact, two_sided, points, weight, power, white)
     if not further and (exact.highlight == 1).all():
         return shade(
             normal, exact.ambient[m], exact.diffuse[m], weight, power, exact.eye, two_sided, white
@@ -300,5 +339,36 @@ def shade_exact(
         np.stack([unit, *(unit @ light.turn.T for light in further)]), m, exact.ambient,
         np.stack([exact.diffuse, *(light.diffuse for light in further)]),
         np.stack([exact.highlight, *(light.highlight for light in further)]), weight, power,
-        np.stack([exact.eye, *(light.eye for light in further)]), two_sided, white,
+        [exact.eye, *(light.eye for light in further)], two_sided, white,
+    )  # fmt: skip
+
+
+def _shade_places(
+    normal: Reals, material: Ints, exact: ExactFrame, two_sided: bool, points: Reals,
+    weight: Function, power: Function, white: int,
+) -> Reals:  # fmt: skip
+    """`shade_exact` where a light is at a place or falls with the distance: every pixel has its own
+    light frame and its own distance. weight, power: W of cos(i) and the curve of cos(s) at the
+    pixels."""
+    length = np.sqrt((normal**2).sum(axis=1))
+    unit = normal / np.where(length > 0, length, 1)[:, None]
+    turns = [np.eye(3), *(light.turn for light in exact.further)]
+    vectors, eyes, factors = [], [], []
+    for place, turn, fixed in zip(
+        exact.places, turns, [exact.eye, *(light.eye for light in exact.further)], strict=True
+    ):
+        if place.position is None:
+            vectors.append(unit @ turn.T)
+            eyes.append(fixed)
+        else:
+            axes, angle = places.frames(places.toward(place.position, points, exact.eye), exact.eye)
+            vectors.append(places.seen(axes, unit))
+            eyes.append(places.of_eye(angle))
+        falloff, distance = place.falloff, place.distance(points, exact.eye)
+        factors.append(falloff.factor(distance) if falloff else np.ones_like(distance))
+    return shade_lights(
+        np.stack(vectors), material, exact.ambient,
+        np.stack([exact.diffuse, *(light.diffuse for light in exact.further)]),
+        np.stack([exact.highlight, *(light.highlight for light in exact.further)]),
+        weight, power, eyes, two_sided, white, factors,
     )  # fmt: skip

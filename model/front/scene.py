@@ -24,6 +24,11 @@ value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All
     diffuse = [1.0, 1.0, 1.0]       # Ld
     specular = [1.0, 1.0, 1.0]      # Ls
     name = "key light"
+    position = [1.0, 2.0, 3.0]      # in place of direction: a light at a place, in scene axes, or
+                                    # in camera axes from the camera's target; or "eye"
+    place = "half"                  # the hardware's approximation: half, light, middle or face
+    attenuation = { distance = [1, 9], values = [1.0, 0.2] }  # falls with the distance; or
+    attenuation = { constant = 1.0, linear = 0.1, quadratic = 0.0 }  # as in OpenGL
 
     [camera]                        # omitted keys are chosen so that all objects are visible
     projection = "orthographic"     # or "perspective"
@@ -103,6 +108,8 @@ from phong75.model.front.mesh_files.load import MESH_SUFFIXES, load_mesh_file
 from phong75.model.front.mesh_files.materials import Materials, reduce_materials
 from phong75.model.front.mesh_files.report import MeshReport
 from phong75.model.front.mesh_normals import normals_and_areas
+from phong75.model.places import RULES as PLACE_RULES
+from phong75.model.places import Falloff, Place
 from phong75.model.reflectance import Curve, Polyline, Power
 
 SCENES = Path(__file__).parent.parent / "scenes"
@@ -205,10 +212,11 @@ class Material:
 
 @dataclass(frozen=True)
 class Light:
-    """A light at infinity.
+    """A light.
 
-    direction: float64[3], unit vector towards the light, scene axes. ambient, diffuse, specular:
-    La, Ld, Ls of red, green and blue, 0 or more.
+    direction: float64[3], unit vector towards the light, scene axes; of a light at a place, from
+    the middle of the scene. ambient, diffuse, specular: La, Ld, Ls of red, green and blue, 0 or
+    more. place: where the light is and how it falls with the distance, scene axes.
     """
 
     direction: Reals
@@ -216,6 +224,7 @@ class Light:
     diffuse: Colour = WHITE
     specular: Colour = WHITE
     name: str = "light"
+    place: Place = Place()
 
 
 @dataclass
@@ -348,7 +357,7 @@ def _mesh_scene(path: Path, size: tuple[int, int] | None, config: Config) -> Sce
         height,
         DEFAULT_BACKGROUND,
         camera,
-        _light(root.table("light"), camera).direction,
+        _light(root.table("light"), camera, item.mesh.vertices).direction,
         False,
         "linear",
         [item],
@@ -457,7 +466,7 @@ def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Confi
         _place_materials(of_files, materials, indices, config, path)
     points = np.concatenate([o.mesh.vertices for o in objects])
     camera = _camera(root.table("camera"), points, width, height)
-    lights = _lights(root, camera)
+    lights = _lights(root, camera, points)
     ambient = root.triple("ambient", WHITE, 0.0, MOST_LIGHT)
     exposure, remarks = _exposure(root, materials, lights, ambient)
     root.finish()
@@ -778,23 +787,26 @@ def _camera(table: _Table, points: Reals, width: int, height_px: int) -> Camera:
     return Camera(projection, axes, centre, centre + axes[2], height=height or fitting)
 
 
-def _lights(root: _Table, camera: Camera) -> list[Light]:
-    """The lights of [light] or [[lights]]; one of the default direction if there is neither."""
+def _lights(root: _Table, camera: Camera, points: Reals) -> list[Light]:
+    """The lights of [light] or [[lights]]; one of the default direction if there is neither.
+
+    points: float64[V, 3], all vertices of the scene.
+    """
     tables = root.list_of_tables("lights")
     single = root.table("light")
     if not tables:
-        return [_light(single, camera)]
+        return [_light(single, camera, points)]
     if single.values:
         raise root.error("light", "and lights cannot both be given")
     if len(tables) > MAX_LIGHTS:
         raise root.error("lights", f"{len(tables)} lights, but there are at most {MAX_LIGHTS}")
-    return [_light(table, camera) for table in tables]
+    return [_light(table, camera, points) for table in tables]
 
 
-def _light(table: _Table, camera: Camera) -> Light:
+def _light(table: _Table, camera: Camera, points: Reals) -> Light:
     """The light of a table; without a direction, that of the default light."""
-    components = table.triple("direction", None)
     relative_to = table.choice("relative_to", ("scene", "camera"), "scene")
+    direction, place = _place(table, camera, points, relative_to)
     name = table.text("name", "light")
     colour = table.triple("color", None, 0.0, MOST_LIGHT)
     parts = {key: table.triple(key, None, 0.0, MOST_LIGHT) for key in ("diffuse", "specular")}
@@ -802,6 +814,46 @@ def _light(table: _Table, camera: Camera) -> Light:
     table.finish()
     if colour is not None and all(parts.values()):
         raise table.error("color", "has no effect beside diffuse and specular")
+    diffuse, specular = (part or colour or WHITE for part in parts.values())
+    return Light(direction, ambient, diffuse, specular, name, place)
+
+
+def _place(table: _Table, camera: Camera, points: Reals, relative_to: str) -> tuple[Reals, Place]:
+    """The direction to a light (unit vector, scene axes) and its place.
+
+    The direction to a light at a place is that from the middle of the scene, the middle of the
+    smallest box around all `points`.
+    """
+    components = table.triple("direction", None)
+    position = table.value("position", None)
+    at_eye = position == "eye"
+    falloff = _falloff(table)
+    if position is None:
+        if falloff:
+            raise table.error("attenuation", "needs a position: a direction has no distance")
+        if "place" in table.values:
+            raise table.error("place", "needs a position")
+    elif components is not None:
+        raise table.error("direction", "and position cannot both be given")
+    rule = table.choice("place", PLACE_RULES, "half")
+    if at_eye:
+        # The eye of the shading is at infinity, so the light has its direction everywhere. The
+        # distance is measured from the eye; without one, from the point that is nearest to it.
+        back, along = camera.axes[2], camera.projection == "orthographic"
+        source = camera.eye if not along else back * float((points @ back).max())
+        for key in ("relative_to", "place"):
+            if key in table.values:
+                raise table.error(key, "has no effect on a light at the eye")
+        return back, Place(None, source, along, falloff)
+    if position is not None:
+        where = np.asarray(table.triple("position", None))
+        if relative_to == "camera":
+            where = camera.target + where @ camera.axes
+        middle = (points.min(axis=0) + points.max(axis=0)) / 2
+        away = where - middle
+        length = float(np.linalg.norm(away))
+        direction = away / length if length > 0 else camera.axes[2]
+        return direction, Place(where, where, False, falloff, rule)
     if components is None:
         components, relative_to = DEFAULT_LIGHT, "camera"
     direction = np.asarray(components)
@@ -810,8 +862,32 @@ def _light(table: _Table, camera: Camera) -> Light:
     direction = direction / np.max(np.abs(direction))
     if relative_to == "camera":
         direction = direction @ camera.axes
-    diffuse, specular = (part or colour or WHITE for part in parts.values())
-    return Light(direction / np.linalg.norm(direction), ambient, diffuse, specular, name)
+    return direction / np.linalg.norm(direction), Place()
+
+
+def _falloff(table: _Table) -> Falloff | None:
+    """The `attenuation` of a light; None without one."""
+    value = table.value("attenuation", None)
+    if value is None:
+        return None
+    inner = table.child("attenuation", value)
+    if "distance" in inner.values or "values" in inner.values:
+        distances = inner.list_of_reals("distance", 0.0)
+        values = inner.list_of_reals("values", 0.0, 1.0)
+        inner.finish()
+        if len(distances) != len(values):
+            raise table.error(
+                "attenuation", f"{len(distances)} distances, but {len(values)} values"
+            )
+        if np.any(np.diff(distances) <= 0):
+            raise inner.error("distance", f"= {_show(distances)} do not increase")
+        return Falloff(tuple(distances), tuple(values))
+    terms = [inner.real(key, default, 0.0) for key, default in
+             (("constant", 1.0), ("linear", 0.0), ("quadratic", 0.0))]  # fmt: skip
+    inner.finish()
+    if not any(terms):
+        raise table.error("attenuation", "has no term that is not 0")
+    return Falloff(coefficients=(terms[0], terms[1], terms[2]))
 
 
 def _show(value: object) -> str:

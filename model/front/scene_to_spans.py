@@ -4,7 +4,9 @@
 The camera projects the triangles of the scene's objects (`camera`). Hidden surfaces are removed per
 scan line, which leaves visible segments (`visibility`). Each segment becomes a span: the normal at
 its first pixel and the step from pixel to pixel (`interpolation`), in the light frame. With several
-lights, the same vectors are also turned into the frame of each further light.
+lights, the same vectors are also turned into the frame of each further light. The frame of a light
+at a place changes along a span, which `phong75.model.places` approximates; a span along which the
+direction to such a light turns too far is cut.
 
 If the scene asks for quadratic normals, the triangles have normals in the middle of their edges as
 well (`mid_edge_normals`), and a span has a bend: how much its step grows from pixel to pixel.
@@ -23,6 +25,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from phong75.model import places
 from phong75.model.arrays import ArrayLike, Flags, Ints, Reals, Spans
 from phong75.model.config import MAX_JUMPS, Config
 from phong75.model.frame import (
@@ -33,6 +36,10 @@ from phong75.model.frame import (
     FurtherLight,
     InputError,
     MaterialTable,
+    depth_codes,
+    distance_range,
+    falloff_codes,
+    half_angle_codes,
     half_vector_codes,
 )
 from phong75.model.front import visibility
@@ -47,6 +54,7 @@ from phong75.model.front.mesh import Mesh, apply_matrix, face_normals, normalize
 from phong75.model.front.mid_edge_normals import RULES, mid_edge_normals
 from phong75.model.front.scene import WHITE, Light, Material, Scene
 from phong75.model.front.visibility import GRID, Segments, Triangles
+from phong75.model.places import Place
 from phong75.model.reflectance import (
     Curve,
     Polyline,
@@ -60,18 +68,24 @@ from phong75.model.reflectance import (
 )
 from phong75.model.spans import bent_beyond
 
+#: Columns of what is interpolated over a triangle: the normal; the exact intensities, in its place;
+#: the point (p/w, 1/w), and the centre of the face.
+NORMAL, INTENSITIES, POINT, CENTRE = slice(0, 3), slice(3, 6), slice(3, 7), slice(7, 10)
+
 
 class VertexShader(Protocol):
     """Gives the intensities that Gouraud and flat shading interpolate or hold."""
 
     def __call__(
-        self, normal: Reals, material: Ints, frame: Frame, exact: ExactFrame, config: Config
-    ) -> tuple[Reals, Reals]:
+        self, normal: Reals, material: Ints, frame: Frame, exact: ExactFrame, config: Config,
+        points: Reals,
+    ) -> tuple[Reals, Reals]:  # fmt: skip
         """S of red, green and blue, float64[n, 3], twice: as the hardware of `config` computes S,
         and by eq. (3) of the paper before any rounding.
 
         normal: float64[n, 3], unit vectors in the light frame. material: int64[n], rows of the
-        material table. frame, exact: registers and materials in codes and before rounding.
+        material table. frame, exact: registers and materials in codes and before rounding. points:
+        float64[n, 3], where the vertices or faces are, in the axes of `exact.places`.
         """
         ...
 
@@ -136,10 +150,19 @@ def make_frame(
             f"{scene.name}: interpolation = {scene.interpolation} is for one light, "
             f"there are {len(scene.lights)}"
         )
+    sources = [light.place.source for light in scene.lights]
+    if scene.interpolation in RULES and any(source is not None for source in sources):
+        raise InputError(
+            f"{scene.name}: interpolation = {scene.interpolation} is for a light with a direction, "
+            "not for one with a position"
+        )
+    at_place = any(light.place.position is not None for light in scene.lights)
     if scene.lit_faces_only and (len(scene.lights) > 1 or scene.interpolation in RULES):
         raise InputError(
             f"{scene.name}: lit_faces_only is for one light and normals without mid-edge normals"
         )
+    if scene.lit_faces_only and at_place:
+        raise InputError(f"{scene.name}: lit_faces_only is for a light at infinity")
     if scene.interpolation == "quadratic_exact":
         for item in scene.objects:
             if item.mesh.surface is None:
@@ -151,31 +174,35 @@ def make_frame(
         raise InputError(f"{scene.name}: has colours, but the pipeline is built for grey")
     frame_axes, eye = light_frame(scene.light, scene.camera.axes[2])
     frame, exact, notes = _frame(scene, eye, config)
+    if any(light.place.source is not None for light in scene.lights):
+        exact.places = [light.place.turned(frame_axes) for light in scene.lights]
     _add_lights(scene, frame_axes, frame, exact, config)
     triangles, dark = _triangles(scene, frame_axes, frame, exact, config, shade_vertices)
+    if config.technique != "phong":  # the intensities hold all lights
+        frame.further, exact.further, exact.places = [], [], []
 
     parts, lit_facing_away = [], 0
     counted = (
         config.technique == "phong" and not scene.toward_light
-        and len(scene.lights) == 1 and scene.interpolation not in RULES
+        and len(scene.lights) == 1 and not at_place and scene.interpolation not in RULES
     )  # fmt: skip
     for segments, done in visible(triangles, scene.width, scene.height):
         if len(segments):
-            parts.append(_spans(triangles, segments, config, scene.interpolation))
+            parts.append(_spans(triangles, segments, config, scene.interpolation, exact))
             if dark.any() and counted:
                 lit_facing_away += _lit_pixels(parts[-1][0], segments, dark, scene.width)
         if progress:
             progress(done)
+    centre = np.zeros((0, 3))
     if parts:
-        frame.spans, exact.start, exact.step, exact.bend = map(
-            np.concatenate, zip(*parts, strict=True)
-        )
+        frame.spans, start, step, bend = map(np.concatenate, zip(*parts, strict=True))
         frame.spans["last"][-1] = True
-    if config.technique != "phong":  # the intensities hold all lights
-        frame.further, exact.further = [], []
-    for light, real in zip(frame.further, exact.further, strict=True):
-        start, step = exact.start @ real.turn.T, exact.step @ real.turn.T
-        light.start, light.step = encode(start, step, frame.spans["length"], config)
+        at = INTENSITIES if config.technique != "phong" else NORMAL
+        exact.start, exact.step, exact.bend = start[:, at], step[:, at], bend[:, at]
+        if exact.places:
+            exact.point, exact.point_step = start[:, POINT], step[:, POINT]
+            centre = start[:, CENTRE]
+    _add_spans(frame, exact, centre, config)
     meshes = [o.mesh for o in scene.objects]
     return FrontEnd(
         frame,
@@ -240,6 +267,48 @@ def _screen_side(corners: Reals) -> Reals:
     """
     (x0, y0, w0), (x1, y1, w1), (x2, y2, w2) = (corners[:, k, :3].T for k in range(3))
     return x0 * (y1 * w2 - y2 * w1) - y0 * (x1 * w2 - x2 * w1) + w0 * (x1 * y2 - x2 * y1)
+
+
+def _add_spans(frame: Frame, exact: ExactFrame, centre: Reals, config: Config) -> None:
+    """Give each light of `frame` its start and step, and what a light at a place needs beside them.
+
+    centre: float64[n, 3], of the face of each span.
+    """
+    spans, here = frame.spans, exact.places or [Place()] * frame.lights
+    steps = np.maximum(spans["length"].astype(np.int64) - 1, 0)[:, None]
+    first = middle = last = np.zeros((len(spans), 3))
+    if len(exact.point):
+        along = [exact.point + part * steps * exact.point_step for part in (0.0, 0.5, 1.0)]
+        first, middle, last = (p[:, :3] / p[:, 3:] for p in along)
+    normals = exact.start, exact.start + steps * exact.step
+    placed = any(place.position is not None for place in here)
+    falls = any(place.falloff for place in here)
+    half_vectors = np.zeros((len(here), len(spans), 2), np.int64)
+    depths, falloff = np.zeros_like(half_vectors), []
+    for number, place in enumerate(here):
+        if place.position is not None:
+            start, end, angle = places.span_ends(
+                place, exact.eye, (first, middle, last, centre), normals
+            )
+            slope = (end - start) / np.maximum(steps, 1)
+            codes = encode(start, slope, spans["length"], config)
+            half_vectors[number] = half_angle_codes(angle, config)
+        else:
+            turn = exact.further[number - 1].turn if number else np.eye(3)
+            codes = encode(exact.start @ turn.T, exact.step @ turn.T, spans["length"], config)
+            half_vectors[number] = frame.light(number, config).half_vector
+        if number:
+            frame.further[number - 1].start, frame.further[number - 1].step = codes
+        elif place.position is not None:
+            spans["start"], spans["step"] = codes
+        begin, end = (place.distance(p, exact.eye) for p in (first, last))
+        low, high = distance_range([begin, end], place.falloff)
+        depths[number] = depth_codes(begin, end, steps[:, 0], low, high, config)
+        falloff.append(falloff_codes(place.falloff, low, high, config))
+    if placed:
+        frame.half_vectors = half_vectors
+    if falls:
+        frame.depths, frame.falloff = depths, np.stack(falloff)
 
 
 def _frame(scene: Scene, eye: Reals, config: Config) -> tuple[Frame, ExactFrame, list[str]]:
@@ -309,9 +378,10 @@ def _triangles(
     `Triangles.value` holds what is interpolated: for Phong's shading the normal in the light frame,
     float64[T, 3, 3], or for quadratic normals float64[T, 3, 6], the normals at a corner and in the
     middle of the opposite edge; else float64[T, 3, 6], the intensities of red, green, blue as the
-    hardware computes them and then the exact ones. frame_axes: float64[3, 3], rows are the axes of
-    the light frame in world coordinates. The normals of a two-sided triangle are reversed if they
-    point away from the side that the eye sees.
+    hardware computes them and then the exact ones. With `exact.places` a linear normal is followed
+    by the point (p/w, 1/w) and by the centre of the face. frame_axes: float64[3, 3], rows are the
+    axes of the light frame in world coordinates. The normals of a two-sided triangle are reversed
+    if they point away from the side that the eye sees.
     """
     meshes = [o.mesh for o in scene.objects]
     points = np.concatenate([m.vertices[m.faces] for m in meshes])
@@ -335,9 +405,16 @@ def _triangles(
         wrong = dark[:, None] & (value[..., 2] > 0)
         value[wrong] = np.broadcast_to(light_side[:, None], value.shape)[wrong]
     material = _of_triangles(scene, "material")
+    place = apply_matrix(frame_axes, points)
+    centre = np.repeat(place.mean(axis=1, keepdims=True), 3, axis=1)
     if config.technique != "phong":
-        both = shade_vertices(value.reshape(-1, 3), np.repeat(material, 3), frame, exact, config)
+        seen = centre if config.technique == "flat" else place
+        both = shade_vertices(
+            value.reshape(-1, 3), np.repeat(material, 3), frame, exact, config, seen.reshape(-1, 3)
+        )
         value = np.concatenate(both, axis=-1).reshape(-1, 3, 6)
+    elif exact.places:
+        value = np.concatenate([value, place, np.ones_like(value[..., :1]), centre], axis=-1)
     # Clipping and culling carry the index of each triangle in place of its material.
     index = np.arange(len(points))
     if scene.interpolation in RULES:
@@ -348,6 +425,8 @@ def _triangles(
     else:
         corners, value, index = visibility.clip(corners, value, index, scene.camera.near)
     w = corners[..., 2]
+    if exact.places and config.technique == "phong":
+        value[..., POINT] /= w[..., None]
     triangles = visibility.set_up(
         corners[..., 0] / w,
         corners[..., 1] / w,
@@ -445,20 +524,24 @@ def _at(
 
 
 def _spans(
-    triangles: Triangles, segments: Segments, config: Config, interpolation: str
+    triangles: Triangles, segments: Segments, config: Config, interpolation: str, exact: ExactFrame
 ) -> tuple[Spans, Reals, Reals, Reals]:
-    """The spans SPAN_DTYPE[n] of `segments`, and their start, step and bend before rounding,
-    float64[n, 3] each.
+    """The spans SPAN_DTYPE[n] of `segments`, and the start, step and bend of what is interpolated
+    before rounding, float64[n, C] each.
 
     The step is the difference between the values at both ends of the segment, divided by the number
     of steps. Each value is a mean of the vertices' values with weights that are exact even in
     slivers; a gradient over the triangle's plane would not be. Quadratic normals are parabolas
     along the segment: that through the values at both ends and in the middle between them.
     """
-    ends = [
-        _at_pixels(triangles, segments, x, triangles.value, interpolation)
-        for x in (segments.left, segments.right - 1)
-    ]
+    rule = "linear" if interpolation == "normalized_edges" else interpolation
+    ends = []
+    for x in (segments.left, segments.right - 1):
+        end = _at_pixels(triangles, segments, x, triangles.value, rule)
+        if rule != interpolation:  # only normals are normalized, not the points beside them
+            normal = triangles.value[..., NORMAL]
+            end[:, NORMAL] = _at_pixels(triangles, segments, x, normal, interpolation)
+        ends.append(end)
     length = segments.right - segments.left
     start, step = ends[0], (ends[1] - ends[0]) / np.maximum(length - 1, 1)[:, None]
     bend = np.zeros_like(step)
@@ -479,23 +562,24 @@ def _spans(
         whole["length"] = length
         whole["start"], whole["step"], whole["bend"] = _codes(start, step, bend, config)
         single |= bent_beyond(whole, config)
-    pieces = np.where(single, length, 1)
-    piece = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    row = np.repeat(np.arange(len(length)), pieces)
-    growth = (piece * (piece - 1) / 2)[:, None]
-    start = start[row] + piece[:, None] * step[row] + growth * bend[row]
+    row, first, count = _cut(
+        np.arange(len(length)), np.zeros_like(length), length, np.where(single, length, 1)
+    )
+    row, first, count = _cut_by_turn(row, first, count, start, step, exact)
+    growth = (first * (first - 1) / 2)[:, None]
+    start = start[row] + first[:, None] * step[row] + growth * bend[row]
     step, bend = (np.where(single[row, None], 0.0, word[row]) for word in (step, bend))
 
     spans = np.zeros(len(row), SPAN_DTYPE)
-    spans["x"] = segments.left[row] + piece
+    spans["x"] = segments.left[row] + first
     spans["y"] = segments.y[row]
-    spans["length"] = np.where(single[row], 1, length[row])
+    spans["length"] = count
     spans["material"] = triangles.material[segments.triangle[row]]
     if interpolation in RULES:
         spans["start"], spans["step"], spans["bend"] = _codes(start, step, bend, config)
     else:
         spans["start"], spans["step"] = encode(start[:, :3], step[:, :3], spans["length"], config)
-    return spans, start[:, -3:], step[:, -3:], bend[:, -3:]
+    return spans, start, step, bend
 
 
 def _codes(start: Reals, step: Reals, bend: Reals, config: Config) -> tuple[Ints, Ints, Ints]:
@@ -519,6 +603,50 @@ def _parabola(first: Reals, middle: Reals, last: Reals, length: Ints) -> tuple[R
     steps = np.maximum(length - 1, 1)[:, None]
     bend = np.where(length[:, None] > 2, 4 * (first - 2 * middle + last) / steps**2, 0.0)
     return bend, (last - first) / steps - (steps - 1) / 2 * bend
+
+
+def _cut(row: Ints, first: Ints, count: Ints, pieces: Ints) -> tuple[Ints, Ints, Ints]:
+    """Cut runs of pixels into `pieces` each, int64[n], of lengths that differ by 1 at most.
+
+    A run is a part of the segment `row`, from its pixel `first` on, and `count` pixels long. The
+    same three arrays of the pieces are returned.
+    """
+    run = np.repeat(np.arange(len(row)), pieces)
+    piece = np.arange(len(run)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    begin = count[run] * piece // pieces[run]
+    end = count[run] * (piece + 1) // pieces[run]
+    return row[run], first[run] + begin, end - begin
+
+
+def _cut_by_turn(
+    row: Ints, first: Ints, count: Ints, start: Reals, step: Reals, exact: ExactFrame
+) -> tuple[Ints, Ints, Ints]:
+    """Cut runs (see `_cut`) until the direction to a light at a place, or to the point from which a
+    distance is measured, turns by at most `Place.most_turn` along a run, or the run is one pixel.
+    The rule `face` needs no cut.
+
+    start, step: float64[s, C], of what is interpolated along the segments.
+    """
+    near = [
+        place for place in exact.places
+        if (place.position is not None and place.rule != "face")
+        or (place.position is None and place.falloff and not place.along)
+    ]  # fmt: skip
+    while near:
+        pieces = np.ones_like(count)
+        ends = [
+            start[row, POINT] + at[:, None] * step[row, POINT] for at in (first, first + count - 1)
+        ]
+        begin, end = (p[:, :3] / p[:, 3:] for p in ends)
+        for place in near:
+            assert place.source is not None
+            turn = places.turn(place.source, begin, end, exact.eye)
+            pieces = np.maximum(pieces, np.ceil(turn / place.most_turn).astype(np.int64))
+        pieces = np.minimum(pieces, count)
+        if (pieces == 1).all():
+            break
+        row, first, count = _cut(row, first, count, pieces)
+    return row, first, count
 
 
 def encode(start: Reals, step: Reals, length: ArrayLike, config: Config) -> tuple[Ints, Ints]:
@@ -591,8 +719,8 @@ def _reflectance(material: Material, i: int, table: MaterialTable, config: Confi
     table.curve[i], table.curve_jumps[i] = words, jumps
     apart = white * curve_distance(material.highlight, words, jumps, config)
     if moved or apart > NOTED_LSB:
-        places = ", ".join(f"{jump.place:g}" for jump in moved)
-        where = f", the jumps at {places} at the end of a line" if moved else ""
+        jumps_at = ", ".join(f"{jump.place:g}" for jump in moved)
+        where = f", the jumps at {jumps_at} at the end of a line" if moved else ""
         notes.append(
             f"material {i}: {len(words)} lines hold the curve of cos(s){where}; up to {apart:.1f} "
             "LSB from the scene's curve"

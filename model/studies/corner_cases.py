@@ -30,9 +30,10 @@ from phong75.model.frame import (
 from phong75.model.front import visibility
 from phong75.model.front.camera import Camera, light_frame
 from phong75.model.front.mesh import Mesh, normalize
-from phong75.model.front.scene import Material, Scene, SceneObject
+from phong75.model.front.scene import Light, Material, Scene, SceneObject
 from phong75.model.front.scene_to_spans import encode
 from phong75.model.front.visibility import GRID
+from phong75.model.places import Falloff, Place
 from phong75.model.reflectance import (
     Curve,
     Polyline,
@@ -724,6 +725,64 @@ def _lights() -> Iterator[CornerCase]:
     )  # fmt: skip
 
 
+# -- lights at a place -----------------------------------------------------------------------------
+
+
+def _sheet(lights: list[Light]) -> Frame:
+    """A sheet of 64 by 32 pixels in the plane z = 0, seen along -z and lit by `lights`; one scene
+    unit is one pixel, and the middle of the picture is the origin. The normals bulge."""
+    x, y = np.array([-32.0, 32, 32, -32]), np.array([-16.0, -16, 16, 16])
+    points = np.stack([x, y, 0 * x], axis=-1)
+    normals = normalize(points / 64 + np.array([0, 0, 1.0]))
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    mesh = Mesh(points, faces, normals[faces])
+    camera = Camera("orthographic", np.eye(3), np.zeros(3), np.array([0, 0, 1.0]), 32.0)
+    material = Material((0.6, 0.5, 0.2), 0.1, 32.0, (0.0, 1.0), (0.4, 0.4))
+    scene = Scene("stability", 64, 32, (0, 0, 0), camera, lights[0].direction, False, "linear",
+                  [SceneObject("sheet", mesh, 0)], [material], lights=lights)  # fmt: skip
+    return front_end(scene).frame
+
+
+def _places() -> Iterator[CornerCase]:
+    """Pairs of lights at a place, all for the same build: both fall with the distance."""
+    up, centre = np.array([0, 0, 1.0]), np.array([-11.5, 4.5, 0])  # the centre of a pixel
+    steep = Falloff((0.0, 1.0, 30.0, 200.0), (1.0, 0.9, 0.2, 0.0))
+
+    def pair(
+        name: str, extreme: str, expected: str, *heights: float, falloff: Falloff = steep
+    ) -> CornerCase:
+        lights = [
+            Light(up if height >= 0 else -up, place=Place(at, at, False, falloff))
+            for number, height in enumerate(heights)
+            for at in [centre * (1 - 2 * number) + height * up]
+        ]
+        return CornerCase(name, extreme, expected, _sheet(lights), unlit_stays_ambient)
+
+    yield pair(
+        "light on the surface",
+        "lights in the plane of the sheet, at the centre of a pixel: distance 0, no direction",
+        "the pixel at the light is lit as from the eye, others as their normals say", 0.0, 0.0,
+    )  # fmt: skip
+    yield pair(
+        "light 2⁻²⁰ above the surface",
+        "the direction turns by 90° from one pixel to the next",
+        "spans of one pixel around the light, within the bound", 2.0**-20, 1.0,
+    )  # fmt: skip
+    yield pair(
+        "light at the eye",
+        "one light on the line of sight of a pixel, light and eye parallel there; one 2³⁰ away",
+        "no frame turns where light and eye are parallel", 40.0, 2.0**30,
+    )  # fmt: skip
+    yield pair(
+        "light behind the surface", "lights behind the sheet, near and far", "ambient", -3.0, -1e4
+    )
+    yield pair(
+        "distances at the table's ends",
+        "factors that fall from 1 to 0 within a pixel; distances beyond the table on both sides",
+        "clamped to the table's ends", 8.0, 20.0, falloff=Falloff((20.0, 21.0), (1.0, 0.0)),
+    )  # fmt: skip
+
+
 def _same_without(frame: Frame, got: Pixels) -> list[str]:
     """Check that the further lights of `frame` change no pixel."""
     alone = render(replace(frame, further=[]))
@@ -837,7 +896,7 @@ def cases() -> list[CornerCase]:
     """All cases, in the order of the table. Every call returns the same integers."""
     makers = (
         _ends_apart, _lengths, _spans, _light, _terminator, _coefficients, _triangles, _lights,
-        _reflectance,
+        _reflectance, _places,
     )  # fmt: skip
     return [case for maker in makers for case in maker()]
 

@@ -45,6 +45,30 @@ def random_frame(
     return Frame(C.max_size, C.max_size, (int(hx), int(hz)), two_sided, (0, 0, 0), table, s)
 
 
+def placed(frame: Frame, seed: int | list[int], half_vectors: bool, falls: bool) -> Frame:
+    """`frame` with random half vectors of each light in each span, and with random distances and
+    factors of them, in place.
+
+    Some distances leave the table's range of 0 to 1, which clamps them.
+    """
+    rng, spans = np.random.default_rng(seed), frame.spans
+    lights, count = frame.lights, len(spans)
+    if half_vectors:
+        angle = rng.uniform(0, np.pi / 2, (lights, count))
+        h = C.half_vector.quantize(np.stack([np.sin(angle), np.cos(angle)], axis=-1))
+        frame.half_vectors = h
+    if falls:
+        fmt, steps = C.depth, np.maximum(spans["length"].astype(np.int64) - 1, 1)
+        first, last = rng.integers(0, fmt.one, (2, lights, count))
+        first[:, ::9] >>= 12
+        last[:, 1::9] = fmt.max
+        first[:, 2::9] = -rng.integers(0, fmt.one, first[:, 2::9].shape)
+        frame.depths = np.stack([first, (last - first) // steps], axis=-1)
+        frame.falloff = rng.integers(0, C.coefficient.one + 1, (lights, C.weight_points))
+        frame.falloff[0, :2] = C.coefficient.one
+    return frame
+
+
 def random_lights(
     seed: int | list[int], spans: int, longest: int, lights: int, two_sided: bool = False,
     coloured: bool = True,

@@ -17,6 +17,7 @@ NO_TWIN = {
     "pixel_fifo": "passes every pixel on unchanged and in order, however the sink stalls",
     "delay": "gives the word unchanged, CYCLES cycles later",
     "light_turns": "takes the records of a span and orders the turns of a pixel's lights",
+    "span_word": "keeps a word of a span's record for all pixels of the span",
     "turn_hold": "keeps the word of a pixel's first turn for its other turns",
     "lut_ram": "gives the word last written to the address: a light's interpolated state",
     "rom": "gives the word at the address: `np.take` of a table of `phong75.model.tables`",

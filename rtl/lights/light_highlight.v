@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// light_highlight: W(i) cos(s)^n of one light; rounded to a word if it is to be coloured.
+// light_highlight: W(i) cos(s)^n of one light; rounded to a word if it is to be multiplied by a
+// colour or by the factor of the distance.
 // Latency: LATENCY cycles (PHONG_LIGHT_HIGHLIGHT_LATENCY in latency.vh; 44 by default).
 // Throughput: one result per cycle.
 // Reset: none; the table is undefined until written.
@@ -33,8 +34,8 @@ module light_highlight (
     // PHONG_HIGHLIGHT_LATENCY + PHONG_EXPONENT_LATENCY cycles later
     input wire [`PHONG_EXPONENT_BITS-1:0] exponent,  // u8.9, n
 
-    // LATENCY cycles later: u0.18 if HIGHLIGHT_COLOUR, else the whole product, u1.35
-    output wire [(`PHONG_HIGHLIGHT_COLOUR ? `PHONG_HIGHLIGHT_BITS
+    // LATENCY cycles later: u0.18 if ROUNDS, else the whole product, u1.35
+    output wire [(`PHONG_ROUNDS_HIGHLIGHT ? `PHONG_HIGHLIGHT_BITS
                   : `PHONG_WEIGHT_BITS + `PHONG_POWER_BITS)-1:0] highlight
 );
 
@@ -50,7 +51,7 @@ module light_highlight (
   localparam WEIGHT_FRACTION      = `PHONG_WEIGHT_FRACTION;
   localparam HIGHLIGHT_BITS       = `PHONG_HIGHLIGHT_BITS;
   localparam HIGHLIGHT_FRACTION   = `PHONG_HIGHLIGHT_FRACTION;
-  localparam HIGHLIGHT_COLOUR     = `PHONG_HIGHLIGHT_COLOUR;
+  localparam ROUNDS               = `PHONG_ROUNDS_HIGHLIGHT;
   localparam POWER_FUNCTION       = `PHONG_POWER_FUNCTION;   // 0: n is always 1
   localparam WEIGHT_FUNCTION      = `PHONG_WEIGHT_FUNCTION;  // 0: W does not depend on i
   localparam HAS_CURVES           = `PHONG_HAS_CURVES;       // 1: any curve in place of cos(s)^n
@@ -193,7 +194,7 @@ module light_highlight (
 
   // ---- round_highlight ----
   generate
-    if (HIGHLIGHT_COLOUR) begin : gen_round
+    if (ROUNDS) begin : gen_round
       round_saturate #(
           .IN_BITS  (PRODUCT_BITS),
           .DROP     (WEIGHT_FRACTION + POWER_FRACTION - HIGHLIGHT_FRACTION),

@@ -5,6 +5,9 @@
 //   {light, 0 or 1, material, ...}  as in register_map; the fields diffuse, half_x and half_z are
 //                                   those of the light
 //   {light, 1, material, 11...13}   ks Ls of red, green, blue (u1.16)
+//   {light, 1, k / 16, 16 + k % 16} {step s1.16, left u1.16} of interval k of the factor of the
+//                                   distance; in builds with jumps the fields belong to
+//                                   reflectance_map
 //   {any, 1, any, 10}               bits 3 to 1: lights of the frame minus 1
 //
 // The light l is shaded in turn l / UNITS by the unit l mod UNITS.
@@ -23,6 +26,9 @@ module light_map #(
     parameter UNITS            = `PHONG_UNITS,
     parameter TURN_BITS        = `PHONG_TURN_BITS,
     parameter HIGHLIGHT_COLOUR = `PHONG_HIGHLIGHT_COLOUR,   // 0: every ks Ls is 1
+    parameter SPAN_HALF_VECTOR = `PHONG_SPAN_HALF_VECTOR,   // 1: spans bring hx and hz
+    parameter ATTENUATION      = `PHONG_ATTENUATION,        // 0: no factor of the distance
+    parameter JUMPS            = `PHONG_CURVE_JUMPS + `PHONG_WEIGHT_JUMPS,
     parameter SPECULAR         = `PHONG_SPECULAR,           // 0: no highlight
     parameter CHANNELS         = `PHONG_CHANNELS            // 3: red, green, blue; 1: grey
 ) (
@@ -39,6 +45,7 @@ module light_map #(
     output reg                 write_half_x,     // hx
     output reg                 write_half_z,     // hz
     output reg [2:0]           write_highlight,  // ks Ls of {blue, green, red}
+    output reg                 write_factor,     // an interval of the factor of the distance
     output reg [UNITS-1:0]     to_unit,          // 1: the light belongs to this unit
     output reg [TURN_BITS-1:0] to_turn,
 
@@ -50,6 +57,7 @@ module light_map #(
   localparam [INDEX_BITS-1:0] HALF_Z = `PHONG_FIELD_HALF_Z;
   localparam [INDEX_BITS-1:0] CONTROL = `PHONG_FIELD_CONTROL;
   localparam [INDEX_BITS-1:0] HIGHLIGHT = `PHONG_FIELD_HIGHLIGHT;  // then green, blue
+  localparam FACTOR = `PHONG_FIELD_ATTENUATION;                    // then the other intervals
   localparam [COEFFICIENT_BITS-1:0] ONE = 1 << `PHONG_COEFFICIENT_FRACTION;
 
   localparam UNIT_BITS = $clog2(UNITS);
@@ -62,17 +70,20 @@ module light_map #(
   wire [WIDE-1:0] its_unit = light - (its_turn << UNIT_BITS);
   wire [INDEX_BITS-1:0] field = write_address[INDEX_BITS-1:0];
   wire write_field = write_enable & write_address[BELOW-1];
+  wire is_factor = (JUMPS == 0) & ({{32 - INDEX_BITS{1'b0}}, field} >= FACTOR);
 
   reg write_control, of_a_light, no_light;
   reg [WIDE-1:0] last_light;  // lights of the frame minus 1
   reg [COEFFICIENT_BITS-1:0] code;
+  reg sloped;  // the word is an interval whose step is not 0
 
   integer c, u;
   always @(posedge clk) begin
     write_half_x <= write_field & (field == HALF_X);
     write_half_z <= write_field & (field == HALF_Z);
     write_control <= write_field & (field == CONTROL);
-    of_a_light <= write_field & ((field == HALF_X) | (field == HALF_Z));
+    write_factor <= write_field & is_factor;
+    of_a_light <= write_field & ((field == HALF_X) | (field == HALF_Z) | is_factor);
     for (c = 0; c < 3; c = c + 1) begin
       write_highlight[c] <= write_field & (field == HIGHLIGHT + c[INDEX_BITS-1:0]);
       if (write_field & ((field == HIGHLIGHT + c[INDEX_BITS-1:0])
@@ -83,6 +94,7 @@ module light_map #(
     no_light <= light >= LIGHTS;
     last_light <= {{WIDE - 3{1'b0}}, write_word[3:1]};
     code <= write_word[COEFFICIENT_BITS-1:0];
+    sloped <= |write_word[2*COEFFICIENT_BITS:COEFFICIENT_BITS];
   end
 
   // ---- register ----
@@ -101,7 +113,9 @@ module light_map #(
     flagged_p2 <= of_a_light & no_light
         | (LIGHTS > 1) & write_control & (last_light >= LIGHTS)
         | (SPECULAR != 0) & (HIGHLIGHT_COLOUR == 0) & |write_highlight & (code != ONE)
-        | (SPECULAR != 0) & (CHANNELS < 3) & |write_highlight[2:1];
+        | (SPECULAR != 0) & (CHANNELS < 3) & |write_highlight[2:1]
+        | (SPECULAR != 0) & (SPAN_HALF_VECTOR != 0) & (write_half_x | write_half_z)
+        | (ATTENUATION == 0) & write_factor & (sloped | (code != ONE));
   end
 
   delay #(
@@ -113,8 +127,7 @@ module light_map #(
       .out(unsupported)
   );
 
-  wire unused = &{1'b0, padded, its_turn, its_unit, turns,
-                  write_word[2*COEFFICIENT_BITS:COEFFICIENT_BITS]};
+  wire unused = &{1'b0, padded, its_turn, its_unit, turns};
 
 endmodule
 

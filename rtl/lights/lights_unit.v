@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// lights_unit: Phong shading with several lights at infinity,
-//   I = e + ka Ia + sum over lights of (ka La + kd Ld (N.L) + ks Ls W(i) cos(s)^n),
-// for red, green and blue. UNITS lights are shaded side by side, the others in further turns of the
-// pixel through the same units. 1/|N| is that of the first light's normal, so that any number of
-// units gives the same bits.
+// lights_unit: Phong shading with several lights, or with lights at a place,
+//   I = e + ka Ia + sum over lights of (ka La + f (kd Ld (N.L) + ks Ls W(i) cos(s)^n)),
+// for red, green and blue. The factor f falls with the distance from the light, or is 1. UNITS
+// lights are shaded side by side, the others in further turns of the pixel through the same units.
+// 1/|N| is that of the first light's normal, so that any number of units gives the same bits. Half
+// vectors are registers, or come with the spans: those of lights at a place.
 // The module holds the wiring, in data order.
 // Latency: that of a pixel in latency.vh, from the last turn of a pixel to its colour.
 // Throughput: one turn per cycle.
@@ -15,7 +16,8 @@
 module lights_unit #(
     parameter UNITS       = `PHONG_UNITS,
     parameter TURN_BITS   = `PHONG_TURN_BITS,
-    parameter NORMAL_BITS = `PHONG_NORMAL_BITS
+    parameter NORMAL_BITS = `PHONG_NORMAL_BITS,
+    parameter VALUES_BITS = `PHONG_SPAN_BITS - `PHONG_MATERIAL_BITS - 3 * `PHONG_COORDINATE_BITS - 1
 ) (
     input wire clk,
     input wire reset,  // synchronous
@@ -28,8 +30,9 @@ module lights_unit #(
     output wire [TURN_BITS-1:0] last_turn,  // register, held for a frame: turns of a pixel minus 1
 
     // offered record: {step z, y, x, start z, y, x}, s1.30 each, of every unit, the first unit in
-    // the lowest bits, each in the frame of its light
-    input wire [6*UNITS*NORMAL_BITS-1:0]  values,
+    // the lowest bits, each in the frame of its light; above them, if the build has them, {hz, hx}
+    // (s0.17) of every unit, then {step, start} of the distance (s1.29) of every unit
+    input wire [VALUES_BITS-1:0]          values,
     input wire                            taken,     // it is accepted as the first of a span
     input wire [`PHONG_COORDINATE_BITS:0] length,    // pixels
     input wire [`PHONG_MATERIAL_BITS-1:0] material,  // index
@@ -76,8 +79,22 @@ module lights_unit #(
   localparam SEGMENT_BITS     = `PHONG_SEGMENT_BITS;
   localparam HAS_CURVES       = `PHONG_HAS_CURVES;      // 1: any curve in place of cos(s)^n
   localparam WEIGHT_JUMPS     = `PHONG_WEIGHT_JUMPS;    // 0: W is continuous
-  localparam HIGHLIGHT_BITS   = `PHONG_HIGHLIGHT_COLOUR ? `PHONG_HIGHLIGHT_BITS
-                                                        : `PHONG_WEIGHT_BITS + `PHONG_POWER_BITS;
+  localparam SPAN_HALF_VECTOR = `PHONG_SPAN_HALF_VECTOR;  // 1: spans bring hx and hz
+  localparam ATTENUATION      = `PHONG_ATTENUATION;       // 0: f is 1
+  localparam HIGHLIGHT_COLOUR = `PHONG_HIGHLIGHT_COLOUR;  // 0: every highlight is white
+  localparam ROUNDED_BITS     = `PHONG_HIGHLIGHT_BITS;
+  localparam DEPTH_BITS       = `PHONG_DEPTH_BITS;
+  localparam PRODUCT_BITS     = `PHONG_WEIGHT_BITS + `PHONG_POWER_BITS;
+  localparam FOUND_BITS       = `PHONG_ROUNDS_HIGHLIGHT ? ROUNDED_BITS : PRODUCT_BITS;
+  localparam HIGHLIGHT_BITS   = HIGHLIGHT_COLOUR ? ROUNDED_BITS : PRODUCT_BITS;
+
+  // A rounded highlight that stays white is padded to the format of the whole product.
+  localparam WHITE_SHIFT = PRODUCT_BITS - `PHONG_WEIGHT_FRACTION - `PHONG_POWER_FRACTION
+                         - (ROUNDED_BITS - `PHONG_HIGHLIGHT_FRACTION);
+
+  // Where the half vectors and the distances of a record start.
+  localparam HALF_FROM  = 6 * UNITS * NORMAL_BITS;
+  localparam DEPTH_FROM = HALF_FROM + (SPAN_HALF_VECTOR ? 2 * UNITS * HALF_BITS : 0);
 
   localparam ADDRESS_BITS = MATERIAL_BITS + INDEX_BITS;
   localparam SHIFT_BITS   = $clog2(NORMAL_BITS);
@@ -92,10 +109,11 @@ module lights_unit #(
   localparam EXPONENT_AT = `PHONG_HIGHLIGHT_LATENCY + `PHONG_EXPONENT_LATENCY;
   localparam COLOUR_AT   = `PHONG_LIGHT_COLOUR_LATENCY;
   localparam TABLE_AT    = COLOUR_AT - `PHONG_LIGHT_TABLE_LATENCY;
+  localparam COSINE_AT   = COLOUR_AT - (ATTENUATION ? `PHONG_LIGHT_ATTENUATION_LATENCY : 0);
 
   // ---- registers ----
   wire two_sided;
-  wire write_weight, write_exponent, write_half_x, write_half_z;
+  wire write_weight, write_exponent, write_half_x, write_half_z, write_factor;
   wire [2:0] write_ambient, write_diffuse, write_highlight;
   wire [UNITS-1:0] to_unit;
   wire [TURN_BITS-1:0] to_turn;
@@ -155,6 +173,7 @@ module lights_unit #(
       .write_half_x(write_half_x),
       .write_half_z(write_half_z),
       .write_highlight(write_highlight),
+      .write_factor(write_factor),
       .to_unit(to_unit),
       .to_turn(to_turn),
       .unsupported(unsupported_light)
@@ -351,8 +370,10 @@ module lights_unit #(
       wire [3*MANTISSA_BITS-1:0] mantissas;
       wire less, lit, lit_normal, lit_colour;
       wire [UNIT_BITS-1:0] unit_x, unit_y, unit_z;
-      wire [COSINE_BITS-1:0] cosine, cosine_colour;
+      wire [COSINE_BITS-1:0] cosine, cosine_late, cosine_colour;
+      wire [FOUND_BITS-1:0] highlight_found;
       wire [HIGHLIGHT_BITS-1:0] highlight;
+      wire depth_overflow;
 
       for (c = 0; c < 3; c = c + 1) begin : gen_component
         if (TURNS > 1) begin : gen_contexts
@@ -382,7 +403,7 @@ module lights_unit #(
         end
       end
 
-      assign overflows[u] = |overflow_here;
+      assign overflows[u] = |overflow_here | depth_overflow;
 
       light_align u_light_align (
           .clk(clk),
@@ -426,40 +447,78 @@ module lights_unit #(
       );
 
       delay #(
-          .BITS  (1 + COSINE_BITS),
+          .BITS  (1),
           .CYCLES(COLOUR_AT)
-      ) u_colour_at (
+      ) u_lit_colour (
           .clk(clk),
-          .in ({lit_normal, cosine}),
-          .out({lit_colour, cosine_colour})
+          .in (lit_normal),
+          .out(lit_colour)
+      );
+
+      delay #(
+          .BITS  (COSINE_BITS),
+          .CYCLES(COSINE_AT)
+      ) u_cosine_late (
+          .clk(clk),
+          .in (cosine),
+          .out(cosine_late)
       );
 
       if (SPECULAR) begin : gen_highlight
         wire [HALF_BITS-1:0] half_x, half_z;
 
-        small_ram #(
-            .ADDRESS_BITS(TURN_BITS),
-            .WORD_BITS(HALF_BITS)
-        ) u_half_x (
-            .clk(clk),
-            .write_enable(write_half_x & to_unit[u]),
-            .write_address(to_turn),
-            .write_word(table_word[HALF_BITS-1:0]),
-            .address(turn_half),
-            .word(half_x)
-        );
+        if (SPAN_HALF_VECTOR) begin : gen_span
+          wire [2*HALF_BITS-1:0] half_now;
 
-        small_ram #(
-            .ADDRESS_BITS(TURN_BITS),
-            .WORD_BITS(HALF_BITS)
-        ) u_half_z (
-            .clk(clk),
-            .write_enable(write_half_z & to_unit[u]),
-            .write_address(to_turn),
-            .write_word(table_word[HALF_BITS-1:0]),
-            .address(turn_half),
-            .word(half_z)
-        );
+          span_word #(
+              .BITS(2 * HALF_BITS)
+          ) u_half (
+              .clk(clk),
+              .single(last_turn == 0),
+              .advance(advance),
+              .load(load),
+              .valid(turn_valid),
+              .turn(turn),
+              .next_turn(next_turn),
+              .offered(values[HALF_FROM+2*u*HALF_BITS+:2*HALF_BITS]),
+              .word(half_now)
+          );
+
+          delay #(
+              .BITS  (2 * HALF_BITS),
+              .CYCLES(NORMAL_AT)
+          ) u_half_normal (
+              .clk(clk),
+              .in (half_now),
+              .out({half_z, half_x})
+          );
+
+          wire unused = &{1'b0, write_half_x, write_half_z};
+        end else begin : gen_registers
+          small_ram #(
+              .ADDRESS_BITS(TURN_BITS),
+              .WORD_BITS(HALF_BITS)
+          ) u_half_x (
+              .clk(clk),
+              .write_enable(write_half_x & to_unit[u]),
+              .write_address(to_turn),
+              .write_word(table_word[HALF_BITS-1:0]),
+              .address(turn_half),
+              .word(half_x)
+          );
+
+          small_ram #(
+              .ADDRESS_BITS(TURN_BITS),
+              .WORD_BITS(HALF_BITS)
+          ) u_half_z (
+              .clk(clk),
+              .write_enable(write_half_z & to_unit[u]),
+              .write_address(to_turn),
+              .write_word(table_word[HALF_BITS-1:0]),
+              .address(turn_half),
+              .word(half_z)
+          );
+        end
 
         light_highlight u_light_highlight (
             .clk(clk),
@@ -478,12 +537,79 @@ module lights_unit #(
             .cosine(cosine),
             .material(material_normal),
             .exponent(exponent),
-            .highlight(highlight)
+            .highlight(highlight_found)
         );
       end else begin : gen_no_highlight
-        assign highlight = {HIGHLIGHT_BITS{1'b0}};
+        assign highlight_found = {FOUND_BITS{1'b0}};
 
         wire unused = &{1'b0, unit_x, unit_y, unit_z, write_half_x, write_half_z, write_weight};
+      end
+
+      if (ATTENUATION) begin : gen_attenuation
+        wire [DEPTH_BITS-1:0] depth;
+        wire [ROUNDED_BITS-1:0] scaled;
+
+        if (TURNS > 1) begin : gen_contexts
+          context_interpolator #(
+              .NORMAL_BITS(DEPTH_BITS)
+          ) u_interpolator (
+              .clk(clk),
+              .single(last_turn == 0),
+              .advance(advance),
+              .load(load),
+              .valid(turn_valid),
+              .turn(turn),
+              .next_turn(next_turn),
+              .start(values[DEPTH_FROM+2*u*DEPTH_BITS+:DEPTH_BITS]),
+              .step(values[DEPTH_FROM+(2*u+1)*DEPTH_BITS+:DEPTH_BITS]),
+              .value(depth),
+              .overflow(depth_overflow)
+          );
+        end else begin : gen_one_context
+          linear_interpolator #(
+              .NORMAL_BITS(DEPTH_BITS)
+          ) u_interpolator (
+              .clk(clk),
+              .advance(advance),
+              .load(load),
+              .start(values[DEPTH_FROM+2*u*DEPTH_BITS+:DEPTH_BITS]),
+              .step(values[DEPTH_FROM+(2*u+1)*DEPTH_BITS+:DEPTH_BITS]),
+              .value(depth),
+              .overflow(depth_overflow)
+          );
+        end
+
+        light_attenuation u_light_attenuation (
+            .clk(clk),
+            .write_enable(write_factor & to_unit[u]),
+            .write_address({to_turn, table_address[INDEX_BITS+:INDEX_BITS-4], table_address[3:0]}),
+            .write_word(table_word),
+            .depth(depth),
+            .turn(turn),
+            .cosine(cosine_late),
+            .highlight(highlight_found),
+            .scaled_cosine(cosine_colour),
+            .scaled_highlight(scaled)
+        );
+
+        if (HIGHLIGHT_COLOUR) begin : gen_coloured
+          assign highlight = scaled;
+        end else begin : gen_white
+          delay #(
+              .BITS  (HIGHLIGHT_BITS),
+              .CYCLES(`PHONG_MULTIPLIER_LATENCY)
+          ) u_highlight (
+              .clk(clk),
+              .in ({scaled, {PRODUCT_BITS - ROUNDED_BITS{1'b0}}} >> WHITE_SHIFT),
+              .out(highlight)
+          );
+        end
+      end else begin : gen_no_attenuation
+        assign depth_overflow = 1'b0;
+        assign cosine_colour = cosine_late;
+        assign highlight = highlight_found;
+
+        wire unused = &{1'b0, write_factor};
       end
 
       light_terms u_light_terms (

@@ -140,6 +140,8 @@ TABLES: dict[str, Callable[[], str]] = {
     "hardware": lambda: tables.hardware(tables.hardware_rows(tables.HARDWARE)),
     "tests": lambda: tables.hardware(tables.hardware_rows(tables.TESTS)),
     "speed": lambda: tables.hardware(tables.hardware_rows(tables.SPEED)),
+    "places": lambda: tables.places(_record("places")),
+    "place-rules": facts.place_rules,
     "lights": lambda: tables.lights(_record("lights")),
     "reflectance": lambda: tables.reflectance(_record("reflectance"), _record("synth-grade6")),
     "curve-powers": facts.curve_powers,

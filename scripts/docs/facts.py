@@ -26,7 +26,7 @@ from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_co
 from phong75.model.front.mesh_files import library
 from phong75.model.front.scene import SHAPES
 from phong75.model.reflectance import Power, curve_distance, curve_words
-from phong75.model.studies import corner_cases
+from phong75.model.studies import corner_cases, light_places
 from phong75.model.studies.methods import points
 from phong75.scripts.docs.tables import markdown
 from phong75.scripts.export import documents
@@ -223,6 +223,18 @@ def budget() -> str:
     rows = error_budget.rows(0, _frame(1.0, 10.0))
     cells = ((row.stage, f"{row.bound:.3g}", row.why.replace("|", "\\|")) for row in rows)
     return markdown(("stage", "bound", "why"), ((a, b, c) for a, b, c in cells), left=3)
+
+
+def place_rules() -> str:
+    """The rules for lights at a place: error against the exact picture, and number of spans."""
+    rows = []
+    for row in light_places.measure():
+        cut = "no" if row.most_turn is None else f"at {np.degrees(row.most_turn):g}°"
+        rows.append(
+            (f"`{row.rule}`", cut, f"{row.max_lsb:.1f}", f"{row.rms_lsb:.3f}", str(row.spans))
+        )
+    header = ("rule", "spans are cut", "largest error, LSB", "RMS, LSB", "spans")
+    return markdown(header, rows, left=2)
 
 
 # -- scenes and proofs -----------------------------------------------------------------------------

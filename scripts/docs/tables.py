@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from phong75.model.config import LIGHT_BUILDS
+from phong75.model.config import LIGHT_BUILDS, PLACE_BUILDS
 from phong75.model.studies import pareto
 from phong75.scripts import recorded
 
@@ -276,6 +276,28 @@ def lights(builds: dict[str, Any]) -> str:
         "clock, MHz", "Mpixel/s",
     )  # fmt: skip
     return markdown(header, rows)
+
+
+def places(builds: dict[str, Any]) -> str:
+    """The builds for a light at a place, of the record `builds`."""
+    words = {
+        "placed_light": "at a place", "falling_light": "falling with the distance",
+        "placed_falling_light": "both",
+    }  # fmt: skip
+    rows = []
+    for name in PLACE_BUILDS:
+        found = builds.get(name, {})
+        used = found.get("resources", {})
+        rows.append((
+            words[name], f"`{name}`",
+            *(str(used.get(key, DASH)) for key in ("dsp", "lut_sites", "ff", "ebr")),
+            number(found.get("clock_mhz"), 0),
+        ))  # fmt: skip
+    header = (
+        "light", "configuration", "multipliers", "LUT sites", "flip-flops", "block RAMs",
+        "clock, MHz",
+    )  # fmt: skip
+    return markdown(header, rows, left=2)
 
 
 #: The records of the table of long runs, in its order, and what makes lines of each.

@@ -40,10 +40,13 @@ def _vectors(frame: Frame, pixel: int, config: Config):
     if config.sums_lights:
         normals = lights_unit.interpolate(frame, span, k, config)
         material = frame.spans["material"][span].astype(np.int64)
+        depths = None
+        if config.attenuation:
+            depths = lights_unit.depth_interpolators(frame, span, k, config)
         for light in range(frame.lights):
-            for found in vectors(normals, material, frame, config, light):
+            for found in vectors(normals, material, frame, config, light, span, depths):
                 yield found.module, found, found.expected
-        yield "light_sum", *_sum(normals, material, frame, config)
+        yield "light_sum", *_sum(normals, material, frame, config, span, depths)
         return
     normal, _ = interpolate(frame.spans, span, k, config)
     trace: dict = {}
@@ -60,10 +63,10 @@ def _vectors(frame: Frame, pixel: int, config: Config):
     yield "shading_unit", [*unit, cosine, lit.astype(np.int64), material], trace
 
 
-def _sum(normals, material, frame: Frame, config: Config):
+def _sum(normals, material, frame: Frame, config: Config, span, depths):
     """Vectors and expected stages of `light_sum` for the first channel of one pixel."""
     traces: list[dict] = [{} for _ in normals]
-    lights_unit.shade(normals, material, frame, config, traces)
+    lights_unit.shade(normals, material, frame, config, traces, span, depths)
     terms = np.concatenate([trace["light_terms.sum"][0] for trace in traces])
     turns = len(terms)
     sums = {}
@@ -125,7 +128,8 @@ def locate(frame: Frame, pixel: int, config: Config = DEFAULT, rtl: Path | None 
             # The modules of one unit: they are the same however many stand side by side.
             build = replace(config, name=f"{config.name}_locate", units=1)
             modules = (
-                "light_align", "held_root", "light_scale", "light_highlight", "light_terms",
+                "light_align", "held_root", "light_scale", "light_highlight",
+                *(("light_attenuation",) if config.attenuation else ()), "light_terms",
                 "light_sum",
             )  # fmt: skip
         where = {"technique": config.technique, "pixel": pixel, "normal_order": config.normal_order}

@@ -12,6 +12,7 @@ from phong75.model.arrays import Ints, Trace
 from phong75.model.config import Config
 from phong75.model.frame import Frame
 from phong75.model.twin.lights import lights_unit
+from phong75.model.twin.lights.light_terms import fraction_bits
 
 
 @dataclass(frozen=True)
@@ -37,15 +38,23 @@ def packed(mantissas: tuple[Ints, ...], config: Config) -> Ints:
     return z << 2 * bits | y << bits | x
 
 
+def factor_words(points: Ints, config: Config) -> Ints:
+    """The words {step, left} of the intervals between `points` (int64[P] in `coefficient`)."""
+    steps = np.diff(points) & ((2 << config.coefficient.bits) - 1)
+    return steps << config.coefficient.bits | points[:-1]
+
+
 def vectors(
-    normals: Ints, material: Ints, frame: Frame, config: Config, light: int
-) -> Iterator[Vectors]:
+    normals: Ints, material: Ints, frame: Frame, config: Config, light: int,
+    span: Ints | None = None, depths: Ints | None = None,
+) -> Iterator[Vectors]:  # fmt: skip
     """Yield the vectors of the modules that shade the light number `light`, in data order.
 
-    normals: int64[lights, 3, n], as for `lights_unit.shade`. material: int64[n].
+    Arguments as of `lights_unit.shade`. With `span` there must be one pixel, since the half vector
+    is held.
     """
     traces: list[Trace] = [{} for _ in normals]
-    lights_unit.shade(normals, material, frame, config, traces)
+    lights_unit.shade(normals, material, frame, config, traces, span, depths)
     first, trace = traces[0], traces[light]
 
     def stages(*modules: str) -> Trace:
@@ -66,13 +75,24 @@ def vectors(
     yield Vectors("light_scale", [mantissas, less, *root], stages("light_scale"))
     *unit, cosine = trace["light_scale.round"]
     seen, table = frame.light(light, config), frame.materials
-    half = (code & ((1 << config.half_vector.bits) - 1) for code in seen.half_vector)
+    given = seen.half_vector if span is None else frame.half_vector_of(light, span[:1], config)
+    half = (int(np.ravel(c)[0]) & ((1 << config.half_vector.bits) - 1) for c in given)
     highlight = trace["light_highlight.round"][0]
     yield Vectors(
         "light_highlight", [*unit, cosine, material, table.exponent[material]],
         stages("reflection", "specular_power_tables", "specular_weight", "light_highlight"),
         dict(zip(("half_x", "half_z"), half, strict=True)),
     )  # fmt: skip
+    if depths is not None:
+        assert frame.falloff is not None
+        inputs = [depths[light], 0 * material, cosine, highlight]
+        yield Vectors(
+            "light_attenuation", inputs, stages("light_attenuation"),
+            codes={"write_enable": factor_words(frame.falloff[light], config)},
+        )  # fmt: skip
+        cosine, highlight = trace["light_attenuation.scale"]
+    if config.rounds_highlight and not config.highlight_colour:
+        highlight = highlight << (fraction_bits(config) - config.highlight.fraction)
     lit = trace["light_align.lit"][0]
     yield Vectors(
         "light_terms", [material, cosine, lit, highlight], stages("light_terms"),

@@ -92,6 +92,10 @@ _OCTAVE = L.format("CURVE_OCTAVE")
 _FALL = "`PHONG_STEPPED_FALL_LATENCY"
 _LINE = _sum(_X, ROM, L.format("NARROW_MULTIPLIER"), 1)
 
+_SCALE_AT = _sum(
+    L.format("LIGHT_NORMAL"), L.format("LIGHT_COLOUR"), "-" + L.format("LIGHT_ATTENUATION")
+)
+
 MODULES = {
     "context_interpolator": Module(
         ("single", "advance", "load", "valid", "turn", "next_turn", "start", "step"),
@@ -153,6 +157,26 @@ MODULES = {
             ),
         ),
         late={"exponent": _sum(L.format("HIGHLIGHT"), L.format("EXPONENT"))},
+    ),
+    "light_attenuation": Module(
+        ("depth", "turn", "cosine", "highlight"),
+        (
+            Stage("light_attenuation.factor", ("factor",), _SCALE_AT),
+            Stage(
+                "light_attenuation.scale", ("scaled_cosine", "scaled_highlight"),
+                _sum(_SCALE_AT, L.format("LIGHT_ATTENUATION")),
+            ),
+        ),
+        held=(
+            ("write_enable", 1),
+            ("write_address", "`PHONG_TURN_BITS + `PHONG_WEIGHT_INDEX_BITS"),
+            ("write_word", "2 * `PHONG_COEFFICIENT_BITS + 1"),
+        ),
+        late={"cosine": _SCALE_AT, "highlight": _SCALE_AT},
+    ),
+    "span_word": Module(
+        ("single", "advance", "load", "valid", "turn", "next_turn", "offered"),
+        (Stage("span_word", ("word",), "1"),),
     ),
     "light_terms": Module(
         ("place_early", "cosine", "lit", "highlight"),

@@ -37,7 +37,8 @@ BUILDS = CONFIGS | _LIGHTS | _REFLECTANCE
 _VARIANTS = (
     "inverse_sqrt_iterated@fast_inverse_1", "specular_power_squaring@squaring_14",
     "quadratic_normalizer@quadratic_spans_14", "light_highlight@lights_8", "light_terms@lights_8",
-    "context_interpolator@lights_8", "reflectance_table@jump",
+    "context_interpolator@lights_8", "reflectance_table@jump", "span_word@lights_8",
+    "light_attenuation@lights_8",
 )  # fmt: skip
 
 #: The benches of the whole design's control and pipeline, and their top levels.

@@ -16,9 +16,10 @@ from phong75.model.studies.random_frames import random_lights
 from phong75.model.twin.lights import lights_unit
 from phong75.model.twin.lights.context_interpolator import context_interpolator
 from phong75.model.twin.lights.held_root import held_root
+from phong75.model.twin.lights.light_attenuation import light_attenuation
 from phong75.model.twin.lights.light_sum import light_sum
 from phong75.sim import environment
-from phong75.sim.module.lights import packed, vectors, write_codes
+from phong75.sim.module.lights import factor_words, packed, vectors, write_codes
 from phong75.sim.module.unit_tb import UnitTB
 from tests.modules.benches import BUILDS
 from tests.modules.datapath import _edges, _normals
@@ -110,6 +111,63 @@ async def light_sum_accumulates(dut):
         )
     }
     await tb.check([terms, first, material], trace, NOTE, in_sequence=True)
+
+
+@_only("light_attenuation")
+async def light_attenuation_random(dut):
+    """Distances from below 0 to the end of the word, for the tables of all turns."""
+    tb = UnitTB(dut, MODULE)
+    rng = np.random.default_rng(SEED)
+    turns, one = C.turns if C.turns > 1 else 2, C.coefficient.one
+    frame = random_lights(SEED, 1, 1, turns)
+    frame.falloff = rng.integers(0, one + 1, (turns, C.weight_points))
+    frame.falloff[0, :3] = one, one, 0
+    for turn in range(turns):
+        for k, word in enumerate(factor_words(frame.falloff[turn], C).tolist()):
+            address = turn << C.weight_index_bits | k
+            await tb.hold(write_address=address, write_word=word, write_enable=1)
+    await tb.hold(write_enable=0)
+    depth = _edges(C.depth, rng, RANDOM)
+    cosine, highlight = _edges(C.cosine, rng, RANDOM), _edges(C.highlight, rng, RANDOM)
+    turn = rng.integers(0, turns, RANDOM)
+    expected: dict = {}
+    for number in range(turns):
+        trace: dict = {}
+        light_attenuation(depth, number, cosine, highlight, frame, C, trace)
+        for name, words in trace.items():
+            before = expected.setdefault(name, tuple(np.zeros_like(w) for w in words))
+            expected[name] = tuple(
+                np.where(turn == number, w, b) for w, b in zip(words, before, strict=True)
+            )
+    await tb.check([depth, turn, cosine, highlight], expected, NOTE)
+
+
+@_only("span_word")
+async def span_word_in_turns(dut):
+    """Words of spans of 1 to 30 pixels in one turn or in as many as there are, with pauses."""
+    tb = UnitTB(dut, MODULE)
+    rng = np.random.default_rng(SEED)
+    for count in {1, C.turns}:
+        lengths = rng.integers(1, 31, 600)
+        pixels = np.repeat(np.arange(len(lengths)), lengths)
+        k = np.arange(len(pixels)) - np.repeat(np.cumsum(lengths) - lengths, lengths)
+        span, k = np.repeat(pixels, count), np.repeat(k, count)
+        turn = np.tile(np.arange(count), len(pixels))
+        words = rng.integers(0, 1 << 2 * C.half_vector.bits, (len(lengths), count))
+        n = 2 * len(turn)
+        advance = rng.random(n) < 0.7
+        advance[0] = True
+        now = np.cumsum(advance) - 1  # the turn that comes after each cycle
+        advance &= now < len(turn)
+        now = np.minimum(now, len(turn) - 1)
+        before = np.maximum(now - advance, 0)
+        load = np.where(advance, k[now] == 0, rng.random(n) < 0.5)
+        inputs = [
+            np.full(n, count == 1), advance, load, advance & (now > 0), turn[before], turn[now],
+            np.where(load & advance, words[span[now], turn[now]], rng.integers(0, 1 << 36, n)),
+        ]  # fmt: skip
+        expected = {"span_word": (words[span[now], turn[now]],)}
+        await tb.check(inputs, expected, f"{NOTE}, turns {count}", in_sequence=True)
 
 
 @_only("context_interpolator")

@@ -8,15 +8,18 @@ differences. The result is exact, since integers are added.
 from __future__ import annotations
 
 from phong75.model.arrays import Flags, Ints
-from phong75.model.config import Config
+from phong75.model.config import Config, Format
 
 
-def linear_interpolator(start: Ints, step: Ints, k: Ints, config: Config) -> tuple[Ints, Flags]:
-    """The component at pixel `k` of spans with `start` and `step`, int64[n] in `normal` (s1.30).
+def linear_interpolator(
+    start: Ints, step: Ints, k: Ints, config: Config, word: Format | None = None
+) -> tuple[Ints, Flags]:
+    """The component at pixel `k` of spans with `start` and `step`, int64[n] in `word`, by default
+    `normal` (s1.30).
 
     Returns the component, wrapped to the word as the adder wraps, and whether the exact value left
     the word (bool[n]), which makes the span illegal.
     """
     exact = start + k * step
-    wrapped = config.normal.wrap(exact)
+    wrapped = (word or config.normal).wrap(exact)
     return wrapped, exact != wrapped

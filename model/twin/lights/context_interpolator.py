@@ -8,11 +8,13 @@ light's state while it shades the others, which changes no value.
 from __future__ import annotations
 
 from phong75.model.arrays import Flags, Ints
-from phong75.model.config import Config
+from phong75.model.config import Config, Format
 from phong75.model.twin.core.linear_interpolator import linear_interpolator
 
 
-def context_interpolator(start: Ints, step: Ints, k: Ints, config: Config) -> tuple[Ints, Flags]:
-    """The component of one light at pixel `k` of spans with `start` and `step`, int64[n] in
-    `normal` (s1.30), and whether the exact value left the word, bool[n]."""
-    return linear_interpolator(start, step, k, config)
+def context_interpolator(
+    start: Ints, step: Ints, k: Ints, config: Config, word: Format | None = None
+) -> tuple[Ints, Flags]:
+    """The component of one light at pixel `k` of spans with `start` and `step`, int64[n] in `word`,
+    by default `normal` (s1.30), and whether the exact value left the word, bool[n]."""
+    return linear_interpolator(start, step, k, config, word)

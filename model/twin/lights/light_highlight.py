@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Twin of rtl/lights/light_highlight.v: W(i) cos(s)**n of one light, rounded if it is coloured."""
+"""Twin of rtl/lights/light_highlight.v: W(i) cos(s)**n of one light, rounded if it is multiplied by
+a colour or by the factor of the distance."""
 
 from __future__ import annotations
 
@@ -20,14 +21,15 @@ def light_highlight(
     unit: Ints, cosine: Ints, material: Ints, frame: Frame, config: Config,
     trace: Trace | None = None,
 ) -> Ints:  # fmt: skip
-    """W(i) cos(s)**n, int64[n]: in `highlight` (u0.18) with `highlight_colour`, else the product of
-    `weight` and `power` (u1.35).
+    """W(i) cos(s)**n, int64[n]: in `highlight` (u0.18) with `Config.rounds_highlight`, else the
+    product of `weight` and `power` (u1.35).
 
     unit: int64[3, n] in `unit` (s0.17). cosine: int64[n] in `cosine` (u0.18). material: int64[n].
-    frame: materials, and the half vector of the light.
+    frame: materials, and the half vector
+    of the light, as two numbers or int64[n] each.
     """
     product = specular_term(unit, cosine, material, frame, config, trace)
-    word = round_highlight(product, config) if config.highlight_colour else product
+    word = round_highlight(product, config) if config.rounds_highlight else product
     if trace is not None:
         trace["light_highlight.round"] = (word,)
     return word

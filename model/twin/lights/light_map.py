@@ -10,16 +10,18 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from phong75.model.config import Config
+from phong75.model.registers import FIELDS
 from phong75.model.twin.core.register_map import register_map, unsupported_write
 from phong75.model.twin.reflectance.reflectance_map import reflectance_map
 
 #: Fields that each light has for itself.
-OF_A_LIGHT = ("diffuse", "highlight", "half_x", "half_z")
+OF_A_LIGHT = ("diffuse", "highlight", "half_x", "half_z", "attenuation")
 
 
 class LightDestination(NamedTuple):
     """Where a write goes: the number of the `light`, 0 for fields that all lights share; the field
-    `name`, `material` and `entry` as of `register_map`."""
+    `name`, `material` and `entry` as of `register_map`; for `attenuation`, `entry` is the interval
+    of the table."""
 
     light: int
     name: str
@@ -30,6 +32,12 @@ class LightDestination(NamedTuple):
 def light_map(address: int, config: Config) -> LightDestination:
     """Decode `address` of the write port."""
     below = 1 + config.material_bits + config.weight_index_bits
+    index = address & ((1 << config.weight_index_bits) - 1)
+    first = FIELDS["attenuation"]
+    if config.weight_index_bits > 4 and address >> (below - 1) & 1 and index >= first:
+        material = address >> config.weight_index_bits & (config.materials - 1)
+        interval = (material << 4 | index & 15) & ((1 << config.weight_index_bits) - 1)
+        return LightDestination(address >> below, "attenuation", 0, interval)
     to = register_map(address & ((1 << below) - 1), config)
     light = address >> below & ((1 << config.light_bits) - 1) if to.name in OF_A_LIGHT else 0
     return LightDestination(light, *to)
@@ -49,6 +57,10 @@ def unsupported_light_write(address: int, word: int, built: Config) -> bool:
     to = light_map(address, built)
     if to.light >= built.lights:
         return True
+    if to.name in ("half_x", "half_z"):
+        return built.span_half_vector and built.specular
+    if to.name == "attenuation":
+        return not built.attenuation and word != built.coefficient.one
     if to.name == "control":
         return built.lights > 1 and (word >> 1 & 7) >= built.lights
     if to.name == "highlight" and built.specular:

@@ -36,7 +36,8 @@ def light_terms(
         coloured = colour * (highlight * ones)
         term += coloured << (fraction - config.coefficient.fraction - config.highlight.fraction)
     elif config.specular:
-        term += highlight * ones
+        whole = fraction - config.highlight.fraction if config.rounds_highlight else 0
+        term += (highlight * ones) << whole
     if trace is not None:
         trace["light_terms.sum"] = tuple(term)
     return term
