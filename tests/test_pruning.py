@@ -11,7 +11,7 @@ import pytest
 from phong75.model import twin
 from phong75.model.analysis import metrics, pruning
 from phong75.model.config import DEFAULT as C
-from phong75.model.frame import Frame, MaterialTable
+from phong75.model.frame import Frame, MaterialTable, with_lights
 from phong75.model.front.scene import bundled_scenes, load_scene
 from phong75.model.registers import writes
 from phong75.model.scene_to_frame import front_end
@@ -245,8 +245,9 @@ def test_a_pruned_build_needs_fewer_writes():
 
 def test_latency_falls():
     for scene in bundled_scenes():
-        pruned, _ = pruning.prune(front_end(load_scene(scene, SIZE)).frame)
-        assert latencies(pruned)["pixel"] < latencies(C)["pixel"], scene
+        frame = front_end(load_scene(scene, SIZE)).frame
+        pruned, full = pruning.prune(frame)[0], with_lights(C, frame)
+        assert latencies(pruned)["pixel"] < latencies(full)["pixel"], scene
 
 
 # -- the table -------------------------------------------------------------------------------------
