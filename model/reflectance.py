@@ -19,7 +19,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from phong75.model.arrays import ArrayLike, Ints, Reals
+from phong75.model.arrays import ArrayLike, Flags, Ints, Reals
 from phong75.model.config import MAX_JUMPS, Config, Format
 
 #: Points at which a line is fitted to a curve, both ends included.
@@ -86,8 +86,13 @@ class Polyline:
     def moved(self, places: dict[float, float]) -> Polyline:
         """As in `Curve`."""
         twice = {a for a, b in zip(self.x, self.x[1:], strict=False) if a == b}
-        x = [places.get(place, place) if place in twice else place for place in self.x]
-        return Polyline(tuple(x), self.y)
+        fixed = np.array([place in twice for place in self.x])
+        x = np.array([places.get(place, place) if place in twice else place for place in self.x])
+        x[fixed] = np.maximum.accumulate(x[fixed])
+        # The points between two jumps stay between them.
+        lower = np.maximum.accumulate(np.where(fixed, x, -np.inf))
+        upper = np.minimum.accumulate(np.where(fixed, x, np.inf)[::-1])[::-1]
+        return Polyline(tuple(np.clip(x, lower, upper).tolist()), self.y)
 
 
 @dataclass(frozen=True)
@@ -123,7 +128,7 @@ class Segments:
 
     first: Ints
     length: Ints
-    mirrored: np.ndarray
+    mirrored: Flags
 
     def versine(self, part: ArrayLike, config: Config) -> Reals:
         """The versine at `part` (float[...], 0 to 1) of each segment's way from its first code,
@@ -186,6 +191,7 @@ def curve_words(curve: Curve, config: Config) -> tuple[Ints, Ints, list[Jump]]:
     for jump in compared:
         # cos(s) >= place where the code of v is below the threshold.
         threshold = int(np.floor(np.ldexp(1 - jump.place, config.versine.fraction))) + 1
+        threshold = min(threshold, config.versine.max)
         codes.append((int(jump.height > 0), threshold, abs(jump.height)))
     return np.stack([left, right - left], axis=-1), _jump_codes(codes, config), moved
 
@@ -320,9 +326,8 @@ def curve_distance(curve: Curve, words: Ints, jumps: Ints, config: Config) -> fl
 def weight_distance(weight: Curve, points: Ints, jumps: Ints, config: Config) -> float:
     """As `curve_distance`, of the table of W (int64[P], int64[J, 3]) from `weight`."""
     zn = np.linspace(0, 1, 1 << 13)
-    zn = np.unique(np.concatenate([zn, *(j.place + zn[:1] for j in weight.jumps)]))
     if isinstance(weight, Polyline):
-        zn = np.unique(np.concatenate([zn, weight.x, np.array(weight.x) - 1e-6]).clip(0, 1))
+        zn = np.unique(np.concatenate([zn, weight.x]).clip(0, 1))
     table = weight_value(
         np.broadcast_to(points, (len(zn), len(points))),
         np.broadcast_to(jumps, (len(zn), *jumps.shape)), zn, config,

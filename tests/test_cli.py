@@ -28,6 +28,7 @@ from phong75.scripts.configurations import CONFIGURATIONS, GROUPS
 from phong75.sim import design
 from phong75.sim.build import BuildError
 from phong75.sim.frame.run_frame import SimResult, SimulationError
+from tests.mesh_writers import CUBE, SQUARES, obj
 
 ROOT = Path(__file__).resolve().parent.parent
 FILES = ["error.png", "frame.png", "reference.png", "report.json", "spans"]
@@ -95,6 +96,22 @@ def start(tmp_path, phong, monkeypatch):
 
 
 # -- good runs -------------------------------------------------------------------------------------
+
+
+def test_a_run_says_what_became_of_a_mesh(start, tmp_path):
+    path = tmp_path / "a.obj"
+    path.write_text(obj(CUBE, [s[::-1] for s in SQUARES]))
+    code, shown, lines = start(path, "--size=32x24")
+    assert (code, lines) == (0, [])
+    assert "a: 1 body of 1 turned round: wound clockwise" in shown
+    assert "12 triangles in 1 part; normals: made here, crease 56 degrees" in shown
+    (mesh,) = json.loads((tmp_path / "out/report.json").read_text())["mesh"]
+    assert mesh["object"] == "a" and mesh["source"] == "a.obj"
+    assert (mesh["triangles"], mesh["bodies"], mesh["bodies_turned"]) == (12, 1, 1)
+
+    path.write_text(obj([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 2, 1)]))
+    code, shown, lines = start(path, "--size=32x24")
+    assert "no pixel: of 1 triangles all turn away from the eye" in shown
 
 
 def test_a_good_run(start, scene, tmp_path):

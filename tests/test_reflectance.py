@@ -114,6 +114,18 @@ def test_a_fifth_jump_moves_to_the_end_of_a_line_and_is_reported():
     assert got == pytest.approx([0.8, 0.9], abs=1e-4)
 
 
+def test_points_beside_a_jump_that_moves_stay_in_order():
+    """0.658 is between the jump at 0.66 and the end of a line, 0.65625, to which the jump moves."""
+    places = [0.31, 0.31, 0.42, 0.42, 0.53, 0.53, 0.64, 0.64, 0.658, 0.66, 0.66, 0.7]
+    y = [0, 0.2, 0.2, 0.4, 0.4, 0.6, 0.6, 0.8, 0.82, 0.82, 0.9, 1.0]
+    curve = Polyline(tuple(places), tuple(y))
+    moved = curve.moved({0.66: 0.65625})
+    assert list(moved.x) == sorted(moved.x) and moved.x[8:11] == (0.65625,) * 3
+    words, jumps, which = curve_words(curve, C)
+    assert [jump.place for jump in which] == [0.66]
+    assert 255 * curve_distance(curve, words, jumps, C) < 255 * 0.1  # the jump's height, moved
+
+
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_curve_that_falls_to_nothing_beside_a_jump_stays_in_its_word(sign):
     y = (1.0, 0.0, 1.0, 0.0)[::sign]
