@@ -73,9 +73,9 @@ def figures(report: dict) -> dict:
 
 
 def record_lights(report: dict) -> None:
-    """Record what `report` found of a build for several lights or for a light at a place, beside the
-    other ones."""
-    name, group = ("lights", LIGHT_BUILDS)
+    """Record what `report` found of a build for several lights, or for a light at a place, beside
+    the other ones."""
+    name, group = "lights", LIGHT_BUILDS
     if report["config"] in PLACE_BUILDS:
         name, group = "places", PLACE_BUILDS
     rows = recorded.figures(name)
