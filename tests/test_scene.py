@@ -41,8 +41,8 @@ def on_screen(scene):
 
 def test_bundled_scenes():
     assert set(bundled_scenes()) == {
-        "coloured_lights", "cone", "lamps", "near_light", "pyramid", "sphere", "still_life", "teapot",
-        "torus", "warnock",
+        "coloured_lights", "cone", "lamps", "near_light", "pyramid", "sphere", "still_life",
+        "teapot", "torus", "warnock",
     }  # fmt: skip
     for name in bundled_scenes():
         scene = load_scene(name)
