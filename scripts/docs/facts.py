@@ -165,6 +165,9 @@ def register_table(config: Config = C) -> str:
          "builds for several lights: lights of the frame minus 1"),
         (f"`{{1, material, {field['highlight']}…{field['highlight'] + 2}}}`",
          f"builds with coloured highlights: ks·Ls of red, green, blue ({c})"),
+        (f"`{{1, k div 16, {field['attenuation']} + k mod 16}}`",
+         "builds with lights that fall with the distance: interval k of the light's factors, "
+         "as for W(i)"),
     ]  # fmt: skip
     return markdown(("address", "contents"), rows, left=2)
 
