@@ -184,10 +184,12 @@ class Config:
         for f in dataclasses.fields(self):
             if f.name in ONE_LIGHT_ONLY and getattr(self, f.name) != f.default:
                 raise ValueError(f"{f.name} is for builds with one white light")
-        if self.attenuation and (1 << self.weight_index_bits) > self.materials << 4:
-            raise ValueError("the address map has no place for so many intervals of attenuation")
-        if self.attenuation and self.weight_index_bits < 5:
-            raise ValueError("weight_index_bits is below 5: no address for attenuation")
+        if self.attenuation and not 5 <= self.weight_index_bits <= self.material_bits + 4:
+            raise ValueError(
+                f"weight_index_bits is {self.weight_index_bits}: attenuation has no addresses"
+            )
+        if self.attenuation and self.turn_bits > self.material_bits:
+            raise ValueError("the table of attenuation has fewer rows than a pixel has turns")
 
     # -- technique ---------------------------------------------------------------------------------
     # phong interpolates normals, gouraud the intensities of vertices; flat holds one intensity per

@@ -110,7 +110,7 @@ assert len(pixels.x) > 500 and elaborate.instances()["multiplier"] > 10
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines() == [
         str(unpacked / "phong75" / "__init__.py"), str(unpacked / "phong75"),
-        str(tmp_path / "cache" / "phong75"), "9",
+        str(tmp_path / "cache" / "phong75"), "6",
     ]  # fmt: skip
     assert [path.name for path in tmp_path.iterdir()] == ["cache"]
 

@@ -255,6 +255,14 @@ def test_a_light_needs_no_more_than_it_uses():
             with_lights(replace(near, **{feature: False}), frame)
 
 
+def test_builds_without_room_for_attenuation_are_refused():
+    for bits in ({"weight_index_bits": 4}, {"weight_index_bits": 9}):
+        with pytest.raises(ValueError, match="attenuation has no addresses"):
+            replace(C, attenuation=True, **bits)
+    with pytest.raises(ValueError, match="fewer rows"):
+        replace(C, attenuation=True, lights=8, material_bits=2)
+
+
 def test_a_scene_decides_what_is_built(tmp_path):
     near = "[light]\nposition = [0.2, -0.4, 1.0]"
     matte = near.replace("position", "attenuation = { linear = 1 }\nposition")

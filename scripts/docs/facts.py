@@ -180,6 +180,9 @@ def register_table(config: Config = C) -> str:
                 ("curve_jump", "the curve of 1 − cos(s)", config.versine),
             )
         ),
+        (f"`{{1, k div 16, {field['attenuation']} + k mod 16}}`",
+         "builds with lights that fall with the distance: interval k of the light's factors, "
+         "as for W(i)"),
     ]  # fmt: skip
     return markdown(("address", "contents"), rows, left=2)
 

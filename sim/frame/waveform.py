@@ -49,9 +49,14 @@ def fields(config: Config) -> dict[str, list[Field]]:
     for name, lsb, bits in span_fields(config):
         if name == "last":  # stands in s_last
             continue
-        interpolated = name.startswith(("start_", "step_"))
-        fraction = config.normal.fraction if interpolated and bits == config.normal.bits else 0
-        span.append(Field(name, lsb, bits, interpolated, fraction))
+        signed = name.startswith(("start_", "step_", "half_"))
+        word = config.normal
+        if name.startswith("half_"):
+            word = config.half_vector
+        elif "_depth" in name:
+            word = config.depth
+        fraction = word.fraction if signed and bits == word.bits else 0
+        span.append(Field(name, lsb, bits, signed, fraction))
     colour, place = config.colour_bits, config.coordinate_bits
     pixel = [
         Field("x", 3 * colour, place),
