@@ -18,7 +18,8 @@ In a build with curves of cos(s) one more bit stands at the top. If it is 1, the
 weight_jump and curve_jump hold two words a jump: {above, threshold}, then the amount in
 `coefficient` (u1.16).
 Where lights fall with the distance, interval k of a light's table of factors is at the field
-attenuation + k mod 16 of the material k div 16. The word is {step, left} as for W(i).
+attenuation + k mod 16 of the material k div 16. The word is {step, left} as for W(i). No build has
+both jumps and factors, so that these fields may be the same.
 """
 
 from __future__ import annotations

@@ -13,7 +13,7 @@ from phong75.model import twin
 from phong75.model.analysis import error_budget, metrics, reference
 from phong75.model.analysis.pruning import prune
 from phong75.model.config import DEFAULT as C
-from phong75.model.config import TECHNIQUES
+from phong75.model.config import MAX_JUMPS, TECHNIQUES
 from phong75.model.frame import InputError, distance_range, falloff_codes, fitted, with_lights
 from phong75.model.front.camera import light_frame
 from phong75.model.front.scene import Light, load_scene
@@ -27,6 +27,7 @@ from phong75.model.places import (
     of_eye,
     toward,
 )
+from phong75.model.reflectance import power_words
 from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import read_spans, write_spans
 from phong75.model.studies.light_places import measure
@@ -261,6 +262,32 @@ def test_builds_without_room_for_attenuation_are_refused():
             replace(C, attenuation=True, **bits)
     with pytest.raises(ValueError, match="fewer rows"):
         replace(C, attenuation=True, lights=8, material_bits=2)
+    with pytest.raises(ValueError, match="attenuation and jumps cannot be in one build"):
+        replace(C, attenuation=True, weight_jumps=1)
+
+
+@pytest.mark.parametrize("scene, message", [
+    ('interpolation = "quadratic"\n[light]\nposition = [0, 0, 2]', "for a light with a direction"),
+    ('lit_faces_only = true\n[light]\nposition = [0, 0, 2]', "is for a light at infinity"),
+])  # fmt: skip
+def test_scenes_that_cannot_have_a_light_at_a_place(scene, message, tmp_path):
+    with pytest.raises(InputError, match=message):
+        front_end(scene_of(scene, tmp_path))
+
+
+def test_curves_with_lights_at_a_place_and_jumps_without_a_fall(tmp_path):
+    """A curve of cos(s) goes with lights that fall with the distance, a jump does not."""
+    frame = front_end(load_scene("near_light", (64, 48))).frame
+    table = frame.materials
+    table.curve = power_words(table.exponent, C)
+    table.curve_jumps = np.zeros((C.materials, MAX_JUMPS, 3), np.int64)
+    config = fitted(C, frame)
+    assert config.has_curves and config.attenuation
+    error = np.abs(twin.render(frame, config).rgb - reference.render(frame, config)).max()
+    assert error <= error_budget.bound_lsb(frame, config)
+    table.curve_jumps[:, 0] = (1, 1000, 100)
+    with pytest.raises(InputError, match="attenuation and jumps cannot be in one build"):
+        fitted(C, frame)
 
 
 def test_a_scene_decides_what_is_built(tmp_path):

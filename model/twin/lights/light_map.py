@@ -30,11 +30,16 @@ class LightDestination(NamedTuple):
 
 
 def light_map(address: int, config: Config) -> LightDestination:
-    """Decode `address` of the write port."""
+    """Decode `address` of the write port.
+
+    In builds with jumps the fields of the factors are `reflectance_map`'s; they are not decoded
+    here.
+    """
     below = 1 + config.material_bits + config.weight_index_bits
     index = address & ((1 << config.weight_index_bits) - 1)
-    first = FIELDS["attenuation"]
-    if config.weight_index_bits > 4 and address >> (below - 1) & 1 and index >= first:
+    is_field, jumps = address >> (below - 1) & 1, config.curve_jumps + config.weight_jumps
+    is_factor = is_field and not jumps and index >= FIELDS["attenuation"]
+    if config.weight_index_bits > 4 and is_factor:
         material = address >> config.weight_index_bits & (config.materials - 1)
         interval = (material << 4 | index & 15) & ((1 << config.weight_index_bits) - 1)
         return LightDestination(address >> below, "attenuation", 0, interval)
