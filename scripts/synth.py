@@ -82,8 +82,9 @@ def record_lights(report: dict) -> None:
     }  # fmt: skip
     builds = {name: rows[name] for name in LIGHT_BUILDS if name in rows}
     command = "make synth CONFIG=lights_8, lights_8_units_2 …"
-    recorded.save("lights", command, tuple(report["tools"]), builds)
-    console.note("recorded in results/lights.json")
+    recorded.record(
+        "lights", command, tuple(report["tools"]), builds, {"builds": len(builds)}
+    )  # fmt: skip
 
 
 def effort(report: dict) -> dict[str, int]:
