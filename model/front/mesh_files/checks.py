@@ -237,6 +237,8 @@ def _ply(name: str, data: Data, prepared: Prepared) -> None:
     for line in lines:
         if line[:1] == [b"element"]:
             owner = line[1]
+        if line[:1] == [b"property"] and len(line) < 3:
+            raise InputError(f"{name}: header line '{_show(b' '.join(line))}' has no type or name")
         if line[:1] == [b"property"] and owner:
             if owner == b"face" and line[-1] in (b"red", b"r"):
                 prepared.unused.append("colours of faces")
