@@ -96,8 +96,7 @@ def record_build(report: dict, name: str) -> None:
     }  # fmt: skip
     builds = {build: rows[build] for build in BUILDS[name] if build in rows}
     command = f"make synth CONFIG={', '.join(list(BUILDS[name])[:2])} …"
-    recorded.save(name, command, tuple(report["tools"]), builds)
-    console.note(f"recorded in results/{name}.json")
+    recorded.record(name, command, tuple(report["tools"]), builds, {"builds": len(builds)})
 
 
 def effort(report: dict) -> dict[str, int]:

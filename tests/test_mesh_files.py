@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Mesh files of every format and feature: the right triangles, and a word about what was done."""
 
+import json
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, example, given, settings
@@ -17,6 +19,7 @@ from tests.mesh_examples import (
     CUBES,
     PER_CORNER,
     PLAIN,
+    QUANTIZED,
     TEXTURED,
     complaint_about,
     gltf_file,
@@ -399,6 +402,7 @@ BROKEN = {
     "count.ply": (ply(CUBE, SQUARES).replace(b"vertex 8", b"vertex x"), "header line 'element ver"),
     "cut.ply": (ply(CUBE, SQUARES, "binary_little_endian")[:-150], "cut short: its header "),
     "cut_faces.ply": (ply(CUBE, SQUARES, "binary_little_endian")[:-9], "not a readable mesh: the "),
+    "bare.ply": (ply(CUBE, SQUARES).replace(b" float y", b""), "header line 'property' has"),
     "points.ply": (ply(CUBE, []), "the mesh has no faces"),
     "cut.stl": (stl(CUBE, CUBE_FACES)[:-7], "cut short: its header declares 12 triangles, 11 fol"),
     "short.stl": (b"\0" * 50, "not an STL file: neither 'solid' nor a binary header"),
@@ -450,6 +454,28 @@ def test_a_crash_of_the_reader_is_one_line(tmp_path, monkeypatch):
         script.write_text(text)
         with pytest.raises(InputError, match=f"a.obj: not a readable mesh: the reader {how}"):
             load_mesh_file(path)
+
+
+@QUICK
+@given(seeds, st.sampled_from([None, -1, 2**40, 1.5, "x", [], {}, [[]], True]))
+@example(0, -1)
+def test_gltf_with_a_wrong_value_anywhere(tmp_path, seed, value):
+    rng = np.random.default_rng(seed)
+    root = json.loads(json.dumps(QUANTIZED.root))
+    root["buffers"] = [{"byteLength": len(QUANTIZED.blob), "uri": "cube.bin"}]
+    (tmp_path / "cube.bin").write_bytes(QUANTIZED.blob)
+    places = []
+
+    def walk(node):
+        for key in node if isinstance(node, dict) else range(len(node)):
+            places.append((node, key))
+            if isinstance(node[key], (dict, list)):
+                walk(node[key])
+
+    walk(root)
+    node, key = places[rng.integers(len(places))]
+    node[key] = value
+    assert not complaint_about(tmp_path, "a.gltf", json.dumps(root).encode())
 
 
 @settings(

@@ -148,7 +148,8 @@ def _group_marker() -> Callable[[re.Match[bytes]], bytes]:
         nonlocal material, group
         word = (match.group(2) or b"").strip()
         if match.group(1) == b"s":
-            group = str(int(word)).encode() if word.isdigit() else b"0"  # also "off"
+            known = word.isdigit() and len(word) < 10  # "off" is no number
+            group = str(int(word)).encode() if known else b"0"
         else:
             material = word
         return b"\nusemtl " + material + (GROUP_MARK.encode() + group if group else b"")
@@ -225,7 +226,7 @@ def _ply(name: str, data: Data, prepared: Prepared) -> None:
     elements = [line for line in lines if line[:1] == [b"element"]]
     counts: dict[bytes, int] = {}
     for line in elements:
-        if len(line) != 3 or not line[2].isdigit():
+        if len(line) != 3 or not line[2].isdigit() or len(line[2]) > 18:
             raise InputError(f"{name}: header line '{_show(b' '.join(line))}' has no count")
         counts[line[1]] = int(line[2])
     if b"vertex" not in counts:
@@ -237,6 +238,8 @@ def _ply(name: str, data: Data, prepared: Prepared) -> None:
     for line in lines:
         if line[:1] == [b"element"]:
             owner = line[1]
+        if line[:1] == [b"property"] and len(line) < 3:
+            raise InputError(f"{name}: header line '{_show(b' '.join(line))}' has no type or name")
         if line[:1] == [b"property"] and owner:
             if owner == b"face" and line[-1] in (b"red", b"r"):
                 prepared.unused.append("colours of faces")
@@ -303,7 +306,7 @@ def _glb(name: str, data: Data, prepared: Prepared) -> None:
     end = 20 + chunk
     root = _gltf_content(name, data[20:end], prepared)
     binary = data[end + 8 : length] if length > end + 8 else b""
-    converted = dequantize(name, root, binary)
+    converted = _dequantized(name, root, binary)
     if converted or chunk % 4:  # Assimp wants chunks of whole words, as the format prescribes
         text = json.dumps(root).encode()
         text += b" " * (-len(text) % 4)
@@ -320,9 +323,18 @@ def _gltf(name: str, data: Data, prepared: Prepared) -> None:
     if text is not data:
         prepared.content = bytes(text)
     root = _gltf_content(name, bytes(text), prepared)
-    if dequantize(name, root, b""):
+    if _dequantized(name, root, b""):
         prepared.content = json.dumps(root).encode()
         prepared.notes.append("positions or normals in integers: converted")
+
+
+def _dequantized(name: str, root: dict[str, Any], binary: bytes) -> bool:
+    """As `dequantize`; raises InputError if the JSON is not built as glTF prescribes."""
+    try:
+        return dequantize(name, root, binary)
+    except (AttributeError, KeyError, TypeError, ValueError, IndexError, OverflowError) as error:
+        message = " ".join(f"{type(error).__name__} {error}".split())[:120]
+        raise InputError(f"{name}: malformed glTF: {message}") from None
 
 
 def _gltf_content(name: str, text: bytes, prepared: Prepared) -> dict[str, Any]:
