@@ -360,7 +360,7 @@ MATERIAL = '[materials.m]\n{}\n[[objects]]\nshape = "sphere"\nmaterial = "m"\n'
         ("a.toml", f"size = [640, 4097]\n{SPHERE}", "size"),
         ("a.toml", f"[light]\ndirection = [0, 0, 0]\n{SPHERE}", "direction"),
         ("a.toml", f"[camera]\neye = [1, 1, 1]\ntarget = [1, 1, 1]\n{SPHERE}", "camera"),
-        ("a.toml", MATERIAL.format("n = 0.5"), "0.5"),
+        ("a.toml", MATERIAL.format("n = -0.5"), "-0.5"),
         ("a.toml", MATERIAL.format("n = 129"), "129"),
         ("a.toml", MATERIAL.format("W = 1.5"), "1.5"),
         ("a.toml", MATERIAL.format("d = -0.5"), "-0.5"),

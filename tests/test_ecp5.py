@@ -94,7 +94,7 @@ def test_cells_of_a_module(tmp_path):
     [
         ["--config=nope"],
         ["--grade=7"],
-        ["--seeds=0"],
+        ["--seeds=-1"],
         ["--seeds=x"],
         ["--what"],
         ["--config"],

@@ -118,6 +118,14 @@ def test_a_normal_belongs_to_the_corner(tmp_path, seed):
             assert normal == pytest.approx(expected[frozenset(own), v], abs=1e-5)
 
 
+def test_a_number_may_begin_with_its_decimal_point(tmp_path):
+    text = "v -1 -1 0\nv 1 -.5 +.25\nv\t.5 1 -.125\nvn .6 0 .8\nf 1//1 2//1 3//1\n"
+    mesh = load(tmp_path, "a.obj", text).mesh
+    corners = sorted(map(tuple, mesh.vertices.tolist()))
+    assert corners == [(-1, -1, 0), (0.5, 1, -0.125), (1, -0.5, 0.25)]
+    assert np.abs(mesh.normals[0]) == pytest.approx(np.tile([0.6, 0, 0.8], (3, 1)))
+
+
 @QUICK
 @given(seeds, st.integers(4, 14), st.booleans())
 def test_a_concave_polygon_has_its_own_area(tmp_path, seed, count, as_ply):

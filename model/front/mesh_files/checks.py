@@ -98,11 +98,18 @@ _COMMENT = re.compile(rb"\n((?:vn|vt|vp|v|fo|f|l|p|s)[ \t][^#\n]*+)#[^\n]*")
 _FEW_COORDINATES = re.compile(
     rb"\nv(?:[ \t]++[^\s#]++)?+(?:[ \t]++[^\s#]++)?+[ \t]*+(?=[\r\n#]|\Z)"
 )
+_VERTEX_LINE = re.compile(rb"\nv[nt]?[ \t][^\r\n]*")
+_POINT_FIRST = re.compile(rb"([ \t][-+]?)\.(?=\d)")
 _GROUPS = re.compile(rb"\n(s|usemtl)(?:[ \t]+([^\r\n]*))?(?=[\r\n]|\Z)")
 _TEXTURE_VERTEX = re.compile(rb"\nvt[ \t]")
 _TEXTURE_INDEX = re.compile(rb"\nf[ \t][^\n/]*+/-?\d")
 _LINES = re.compile(rb"\n[lp][ \t]")
 _CURVES = re.compile(rb"\n(?:cstype|curv|curv2|surf|bmat)[ \t]")
+
+
+def _with_leading_zeros(line: re.Match[bytes]) -> bytes:
+    """The line of a vertex with 0.5 in place of .5."""
+    return _POINT_FIRST.sub(rb"\g<1>0.", line.group())
 
 
 def _obj(name: str, data: Data, prepared: Prepared) -> None:
@@ -117,6 +124,9 @@ def _obj(name: str, data: Data, prepared: Prepared) -> None:
         text, changed = re.sub(rb"\n[ \t]+", b"\n", text), True
     if text.count(b"#") > text.count(b"\n#"):
         text, changed = _COMMENT.sub(rb"\n\1", text), True
+    if any(mark in text for mark in (b" .", b"\t.", b"-.", b"+.")):
+        # Assimp counts no number that begins with its decimal point.
+        text, changed = _VERTEX_LINE.sub(_with_leading_zeros, text), True
     short = _FEW_COORDINATES.search(text)
     if short:
         number = text.count(b"\nv ", 0, short.start()) + text.count(b"\nv\t", 0, short.start()) + 1
