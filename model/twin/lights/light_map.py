@@ -37,15 +37,15 @@ def light_map(address: int, config: Config) -> LightDestination:
     """
     below = 1 + config.material_bits + config.weight_index_bits
     index = address & ((1 << config.weight_index_bits) - 1)
+    light = address >> below & ((1 << config.light_bits) - 1)
     is_field, jumps = address >> (below - 1) & 1, config.curve_jumps + config.weight_jumps
     is_factor = is_field and not jumps and index >= FIELDS["attenuation"]
     if config.weight_index_bits > 4 and is_factor:
         material = address >> config.weight_index_bits & (config.materials - 1)
         interval = (material << 4 | index & 15) & ((1 << config.weight_index_bits) - 1)
-        return LightDestination(address >> below, "attenuation", 0, interval)
+        return LightDestination(light, "attenuation", 0, interval)
     to = register_map(address & ((1 << below) - 1), config)
-    light = address >> below & ((1 << config.light_bits) - 1) if to.name in OF_A_LIGHT else 0
-    return LightDestination(light, *to)
+    return LightDestination(light if to.name in OF_A_LIGHT else 0, *to)
 
 
 def unsupported_light_write(address: int, word: int, built: Config) -> bool:
