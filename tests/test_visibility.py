@@ -9,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from phong75.model.config import DEFAULT, Config, Format
-from phong75.model.frame import InputError
+from phong75.model.frame import ExactFrame, InputError
 from phong75.model.front import scene_to_spans, visibility
 from phong75.model.front.camera import Camera, light_frame, view_axes
 from phong75.model.front.interpolation import interpolate, interpolate_at, scan_line_weights
@@ -522,10 +522,11 @@ def test_a_step_of_two_becomes_single_pixels():
     segment = Segments(*(np.array([v]) for v in (0, 1, 0, 2)))
     normals = np.array([[(0, 0, 1.0), (1.0, 0, 0), (-1.0, 0, 0)]])
     triangles.value = normals  # at line 1: half down both edges
-    spans, start, step, bend = scene_to_spans._spans(triangles, segment, DEFAULT, "linear")
+    exact = ExactFrame(*[np.zeros((0, 3))] * 7, [], [])  # without a light at a place
+    spans, start, step, bend = scene_to_spans._spans(triangles, segment, DEFAULT, "linear", exact)
     assert len(spans) == 1
     triangles.value = np.array([[(0, -1.0, 0), (0, -1.0, 0), (0, 3.0, 0)]])  # step exactly 2
-    spans, start, step, bend = scene_to_spans._spans(triangles, segment, DEFAULT, "linear")
+    spans, start, step, bend = scene_to_spans._spans(triangles, segment, DEFAULT, "linear", exact)
     assert spans["x"].tolist() == [0, 1] and spans["length"].tolist() == [1, 1]
     assert spans["material"].tolist() == [3, 3]
     assert (step == 0).all() and (spans["step"] == 0).all() and not bend.any()
