@@ -12,6 +12,7 @@ from phong75.model.front import mesh_normals
 from phong75.model.studies.methods import CONFIGS
 from phong75.scripts import recorded
 from phong75.scripts.docs import commands, facts, tables
+from phong75.sim import design
 
 #: Tables that change with date and commit alone: filled, and not compared.
 UNCOMPARED = ("provenance",)
@@ -114,7 +115,9 @@ def summary() -> str:
         ("corner cases", f"{len(_record('stability')['rows'])}, "
          f"{sum(row['verdict'] != 'ok' for row in _record('stability')['rows'])} fail",
          "[stability](docs/studies/stability.md)"),
-        ("mutants", f"{_mutants('mutants')}, {_mutants('survived')} survive",
+        (f"mutants, of {len(_record('mutate')['files'])} of "
+         f"{len(design.sources()) + len(design.headers())} files of `rtl/`",
+         f"{_mutants('mutants')}, {_mutants('survived')} survive",
          "[verification](docs/verification.md#mutants)"),
         ("coverage of `rtl/`", f"lines {coverage['percent']['line']:g} %, branches "
          f"{coverage['percent']['branch']:g} %", "[verification](docs/verification.md#coverage)"),
