@@ -202,8 +202,8 @@ PROOFS = (
         broken_designs=(
             BrokenDesign(
                 "phong_pipeline",
-                ".overflow(overflow),\n      .credit(credit)",
-                ".overflow(overflow),\n      .credit(credit & m_axis_tready)",
+                ".credit(walker_credit),",
+                ".credit(walker_credit & m_axis_tready),",
                 "no_path",
             ),
         ),
