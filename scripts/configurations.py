@@ -20,9 +20,6 @@ from phong75.model.config import (
 from phong75.model.frame import InputError
 from phong75.model.studies import methods
 
-#: Configurations of which `phong75 synth --record` keeps the figures, beside the default one.
-MORE = "with more built in"
-
 
 def plain(name: str) -> str:
     """A name as it is typed: `diffuse grey` of a table is diffuse_grey."""
@@ -37,7 +34,7 @@ def _groups() -> dict[str, dict[str, Config]]:
         "the full pipeline": {DEFAULT.name: DEFAULT},
         "older techniques": older,
         "with less built in": {n: c for n, c in by_hand.items() if n not in older},
-        MORE: {
+        "with more built in": {
             "hold_unlit": dataclasses.replace(DEFAULT, name="hold_unlit", hold_unlit=True),
             "quadratic_normals": dataclasses.replace(
                 DEFAULT, name="quadratic_normals", normal_order=2
@@ -57,6 +54,8 @@ def _groups() -> dict[str, dict[str, Config]]:
 
 #: {what they are: {name: configuration}}; no name is in two of them.
 GROUPS = _groups()
+#: Builds of which `phong75 synth --record` keeps the figures, beside the default one.
+BUILDS = GROUPS["with more built in"] | CURVE_BUILDS | LIGHT_BUILDS | PLACE_BUILDS
 CONFIGURATIONS = {name: config for group in GROUPS.values() for name, config in group.items()}
 
 

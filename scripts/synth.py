@@ -13,17 +13,17 @@ from pathlib import Path
 from rich.table import Table
 
 from phong75.model.analysis.pruning import prune
-from phong75.model.config import CURVE_BUILDS, DEFAULT, LIGHT_BUILDS, PLACE_BUILDS, Config
+from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import InputError, fitted
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
 from phong75.scripts import console, recorded
-from phong75.scripts.configurations import GROUPS, MORE
+from phong75.scripts.configurations import BUILDS
 from phong75.scripts.console import Steps
 from phong75.scripts.synthesis import ecp5
 
-#: The record of configurations with more built in than the default one.
-RECORD_OF_MORE = "synth-more"
+#: The record of BUILDS, a row each.
+RECORD_OF_BUILDS = "synth-more"
 
 
 def pruned(config: Config, scene: str) -> Config:
@@ -77,41 +77,23 @@ def figures(report: dict) -> dict:
     return found
 
 
-#: {record: the builds that it has a row for}.
-BUILDS = {"lights": LIGHT_BUILDS, "places": PLACE_BUILDS, "reflectance": CURVE_BUILDS}
-
-
-def record_of(config: Config) -> str:
-    """The record that has a row for the build `config`; "" if none has."""
-    return next((name for name, builds in BUILDS.items() if config.name in builds), "")
-
-
-def record_build(report: dict, name: str) -> None:
-    """Record what `report` found of a build, beside the other ones of the record `name`."""
-    rows = recorded.figures(name)
-    rows[report["config"]] = {
-        "clock_mhz": report["fmax_mhz"]["median"], "resources": report["resources"],
-        "seeds": len(report["seeds"]), "date": datetime.date.today().isoformat(),
-        "commit": recorded.commit(),
-    }  # fmt: skip
-    builds = {build: rows[build] for build in BUILDS[name] if build in rows}
-    command = f"make synth CONFIG={', '.join(list(BUILDS[name])[:2])} …"
-    recorded.record(name, command, tuple(report["tools"]), builds, {"builds": len(builds)})
-
-
 def effort(report: dict) -> dict[str, int]:
     """How much was computed for `report`: seeds routed, and whether gates were counted."""
     return {"seeds": len(report["seeds"]), "gates": int("gates" in report)}
 
 
-def _record_more(report: dict) -> None:
-    """Record the figures of `report`, of a configuration with more built in, beside others."""
-    name, effort_now = report["config"], {"seeds": len(report["seeds"])}
-    kept = recorded.figures(RECORD_OF_MORE).get("configurations", {})
-    own = {"date": datetime.date.today().isoformat(), "commit": recorded.commit()}
+def _record_build(name: str, found: dict, tools: dict) -> None:
+    """Keep `found` (seeds, clock_mhz, resources, ...) of the build `name` beside the other builds,
+    unless the record has more placements of it."""
+    rows = recorded.figures(RECORD_OF_BUILDS).get("configurations", {})
+    before = rows.get(name, {}).get("seeds", 0)
+    rows[name] = found | {
+        "date": datetime.date.today().isoformat(), "commit": recorded.commit(),
+    }  # fmt: skip
+    lesser = f"{found['seeds']} seeds, and the record has {before} of {name}"
     recorded.record(
-        RECORD_OF_MORE, "make synth CONFIG=NAME", tuple(report["tools"]),
-        {"configurations": kept | {name: figures(report) | own}}, effort_now,
+        RECORD_OF_BUILDS, "make synth CONFIG=NAME", tuple(tools), {"configurations": rows},
+        part=lesser if found["seeds"] < before else "",
     )  # fmt: skip
 
 
@@ -126,10 +108,9 @@ def count(config: Config, record: bool) -> int:
     for name, value in used.items():
         out.add_row(name, str(value))
     console.show(out)
-    if record and record_of(config):
-        none = {"median": None}
-        report = {"config": config.name, "resources": used, "fmax_mhz": none, "seeds": []}
-        record_build(report | {"tools": ecp5.versions()}, record_of(config))
+    if record and BUILDS.get(config.name) == config:
+        found = {"seeds": 0, "clock_mhz": None, "resources": used}
+        _record_build(config.name, found, ecp5.versions())
     elif record:
         console.note("not recorded: a record needs a clock, --seeds 1 or more")
     return console.GOOD
@@ -141,17 +122,14 @@ def main(config: Config, grade: int, seeds: int, count_gates: bool, record: bool
     Raises InputError, SynthesisError.
     """
     recorded.check(record)
-    more = GROUPS[MORE].get(config.name) == config and grade == 6
     if count_gates and not ecp5.LIBERTY.is_file():
         raise InputError("--gates needs a library of cells: apt-get install qflow-tech-osu018")
     if seeds == 0:
         return count(config, record)
     report = ecp5.run(config, grade, tuple(range(1, seeds + 1)), count_gates, Steps().step)
     console.show(table(report))
-    if record and record_of(config):
-        record_build(report, record_of(config))
-    elif record and more:
-        _record_more(report)
+    if record and grade == 6 and BUILDS.get(config.name) == config:
+        _record_build(config.name, figures(report), report["tools"])
     elif record:
         recorded.record(
             f"synth-grade{grade}",

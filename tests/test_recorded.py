@@ -93,6 +93,21 @@ def test_synth_records_configurations_with_more_built_in_side_by_side(results, m
     assert kept["hold_unlit"]["resources"] == REPORT["resources"]
 
 
+def test_a_count_of_a_build_does_not_replace_its_clock(results, monkeypatch, capsys):
+    monkeypatch.setattr(synth.ecp5, "run", lambda config, *given: REPORT | {"config": config.name})
+    monkeypatch.setattr(synth.ecp5, "synthesize", lambda *given: REPORT)
+    monkeypatch.setattr(synth.ecp5, "versions", lambda: REPORT["tools"])
+    monkeypatch.setattr(synth.ecp5, "FOLDER", results.parent / "synth")
+    command = ["synth", "--config=lights_8", "--record"]
+    assert main.main([*command, "--seeds=0"]) == 0
+    assert recorded.figures("synth-more")["configurations"]["lights_8"]["clock_mhz"] is None
+    assert main.main([*command, "--seeds=1"]) == 0
+    routed = (results / "synth-more.json").read_bytes()
+    assert main.main([*command, "--seeds=0"]) == 0
+    assert (results / "synth-more.json").read_bytes() == routed
+    assert "0 seeds, and the record has 1 of lights_8" in capsys.readouterr().err
+
+
 def test_synth_records_the_default_configuration_with_as_many_seeds(results, monkeypatch, capsys):
     monkeypatch.setattr(
         synth.ecp5, "run", lambda *given: REPORT | {"seeds": REPORT["seeds"] * len(given[2])}

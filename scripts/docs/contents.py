@@ -44,6 +44,10 @@ def _synthesis(*path: str) -> Any:
     return found
 
 
+def _builds() -> dict[str, Any]:
+    return _record("synth-more")["configurations"]
+
+
 def _mutants(what: str) -> int:
     files = _record("mutate")["files"]
     return sum(tables.mutant_totals(files, kind)[what] for kind in ("operator", "constant"))
@@ -143,10 +147,10 @@ TABLES: dict[str, Callable[[], str]] = {
     "hardware": lambda: tables.hardware(tables.hardware_rows(tables.HARDWARE)),
     "tests": lambda: tables.hardware(tables.hardware_rows(tables.TESTS)),
     "speed": lambda: tables.hardware(tables.hardware_rows(tables.SPEED)),
-    "places": lambda: tables.places(_record("places")),
+    "places": lambda: tables.places(_builds()),
     "place-rules": facts.place_rules,
-    "lights": lambda: tables.lights(_record("lights")),
-    "reflectance": lambda: tables.reflectance(_record("reflectance"), _record("synth-grade6")),
+    "lights": lambda: tables.lights(_builds()),
+    "reflectance": lambda: tables.reflectance(_builds(), _record("synth-grade6")),
     "curve-powers": facts.curve_powers,
     "shapes": facts.shapes,
     "proofs": facts.proofs,

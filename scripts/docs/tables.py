@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from phong75.model.config import LIGHT_BUILDS, PLACE_BUILDS
+from phong75.model.config import CURVE_BUILDS, LIGHT_BUILDS, PLACE_BUILDS
 from phong75.model.studies import pareto
 from phong75.scripts import recorded
 
@@ -40,23 +40,6 @@ def logic(records: Iterable[dict[str, Any]]) -> tuple[str, str]:
     only Yosys's count was kept of one of them. One table, one count."""
     some = any(r.get("lut_cells") is not None and r.get("lut_sites") is None for r in records)
     return ("lut_cells", "LUT cells (Yosys)") if some else ("lut_sites", "LUT sites")
-
-
-# -- builds by name --------------------------------------------------------------------------------
-
-
-def reflectance(record: dict[str, Any], default: dict[str, Any]) -> str:
-    """Builds with curves and jumps on the chip. default: figures of the default build."""
-    first = {"clock_mhz": default["clock_mhz"]["median"], "resources": default["resources"]}
-    rows = []
-    for name, build in {"default": first, **record}.items():
-        used = build["resources"]
-        rows.append((
-            f"`{name}`", str(used["dsp"]), str(used["ebr"]), str(used["lut_sites"]),
-            str(used["ff"]), number(build["clock_mhz"]),
-        ))  # fmt: skip
-    header = ("build", "multipliers", "block RAMs", "LUT sites", "flip-flops", "clock, MHz")
-    return markdown(header, rows)
 
 
 # -- scenes ----------------------------------------------------------------------------------------
@@ -208,6 +191,8 @@ def _more_synthesis(found: dict[str, Any]) -> list[tuple[str, str, str]]:
     rows = []
     for name, of in found["configurations"].items():
         used, clock = of["resources"], of["clock_mhz"]
+        if name in CURVE_BUILDS | LIGHT_BUILDS | PLACE_BUILDS:  # they have tables of their own
+            continue
         rows.append((
             f"the same chip with `{name}`",
             f"{clock['median']:.1f} MHz, median of {of['seeds']} placements, best "
@@ -259,45 +244,50 @@ def _benchmark(found: dict[str, Any]) -> list[tuple[str, str, str]]:
     ]  # fmt: skip
 
 
+#: Columns of a build's row, and their keys in the record.
+_BUILD = {
+    "multipliers": "dsp", "LUT sites": "lut_sites", "flip-flops": "ff", "block RAMs": "ebr",
+}  # fmt: skip
+
+
+def _build(found: dict[str, Any] | None) -> tuple[str, ...]:
+    """The columns of _BUILD and the clock in MHz; dashes where nothing is recorded."""
+    used = found["resources"] if found else {}
+    clock = found["clock_mhz"] if found else None
+    return (
+        *(str(used.get(key, DASH)) for key in _BUILD.values()),
+        number(clock["median"] if clock else None, 0),
+    )
+
+
 def lights(builds: dict[str, Any]) -> str:
-    """The builds for eight lights of the record `builds`: what units side by side cost."""
+    """The builds for eight lights of `builds` (configurations of synth-more): what units side by
+    side cost."""
     rows = []
     for name, config in LIGHT_BUILDS.items():
-        found = builds.get(name, {})
-        used, clock = found.get("resources", {}), found.get("clock_mhz")
-        rate = f"{clock / config.turns:.0f}" if clock else DASH
-        rows.append((
-            str(config.units), str(config.turns),
-            *(str(used.get(key, DASH)) for key in ("dsp", "lut_sites", "ff", "ebr")),
-            number(clock, 0), rate,
-        ))  # fmt: skip
-    header = (
-        "units", "cycles a pixel", "multipliers", "LUT sites", "flip-flops", "block RAMs",
-        "clock, MHz", "Mpixel/s",
-    )  # fmt: skip
-    return markdown(header, rows)
+        found = builds.get(name)
+        clock = found and found["clock_mhz"]
+        rate = f"{clock['median'] / config.turns:.0f}" if clock else DASH
+        rows.append((str(config.units), str(config.turns), *_build(found), rate))
+    return markdown(("units", "cycles a pixel", *_BUILD, "clock, MHz", "Mpixel/s"), rows)
 
 
 def places(builds: dict[str, Any]) -> str:
-    """The builds for a light at a place, of the record `builds`."""
+    """The builds for a light at a place, of `builds` (configurations of synth-more)."""
     words = {
         "placed_light": "at a place", "falling_light": "falling with the distance",
         "placed_falling_light": "both",
     }  # fmt: skip
-    rows = []
-    for name in PLACE_BUILDS:
-        found = builds.get(name, {})
-        used = found.get("resources", {})
-        rows.append((
-            words[name], f"`{name}`",
-            *(str(used.get(key, DASH)) for key in ("dsp", "lut_sites", "ff", "ebr")),
-            number(found.get("clock_mhz"), 0),
-        ))  # fmt: skip
-    header = (
-        "light", "configuration", "multipliers", "LUT sites", "flip-flops", "block RAMs",
-        "clock, MHz",
-    )  # fmt: skip
-    return markdown(header, rows, left=2)
+    rows = [(words[name], f"`{name}`", *_build(builds.get(name))) for name in PLACE_BUILDS]
+    return markdown(("light", "configuration", *_BUILD, "clock, MHz"), rows, left=2)
+
+
+def reflectance(builds: dict[str, Any], default: dict[str, Any]) -> str:
+    """Builds with curves and jumps of `builds` (configurations of synth-more), beside the `default`
+    one."""
+    names = {"default": default} | {name: builds.get(name) for name in CURVE_BUILDS}
+    rows = [(f"`{name}`", *_build(found)) for name, found in names.items()]
+    return markdown(("build", *_BUILD, "clock, MHz"), rows)
 
 
 #: The records of the table of long runs, in its order, and what makes lines of each.
