@@ -462,13 +462,16 @@ def read_spans(path: str | Path, config: Config) -> Frame:
 
 
 def written_for(path: str | Path, config: Config) -> Config:
-    """`config` with the lights, units and places of the build that the span file `path` is for.
+    """`config` with the bends, or the lights, units and places, of the build that the span file
+    `path` is for.
 
-    A file that cannot be read, or that has no lights, gives `config`; `read_spans` says what is
-    wrong with it.
+    A file that cannot be read, or that has neither, gives `config`; `read_spans` says what is wrong
+    with it.
     """
     try:
         header, _ = _split(Path(path).read_bytes())
+        if header["formats"].get("normal_order") == 2:
+            return replace(config, name=f"{config.name}_quadratic", normal_order=2)
         lights, fields = header["lights"], header["record"]["fields"]
         one = config.coefficient.one
         coloured = any(c != one for light in lights for row in light["highlight"] for c in row)
@@ -479,7 +482,7 @@ def written_for(path: str | Path, config: Config) -> Config:
             highlight_colour=coloured or not (len(lights) > 1 or placed or falls),
             span_half_vector=placed, attenuation=falls,
         )  # fmt: skip
-    except (OSError, InputError, KeyError, TypeError, ValueError):
+    except (OSError, InputError, AttributeError, KeyError, TypeError, ValueError):
         return config
 
 

@@ -95,15 +95,15 @@ class Stimulus:
     """What the front end leaves: the frame, its file, the full configuration with the lights of the
     frame, and the configuration to build for it.
 
-    exact: the scene before any rounding; None where there is no scene behind the spans. notes: as
-    of `FrontEnd`. full: the configuration of the request, with what the frame needs beyond it;
-    built: what is left of it after pruning. meshes: what was decided about each object of the
-    scene, by its name. front: what the front end found besides; None where there is no scene.
+    exact: the scene before any rounding; None where there is no scene behind the spans. notes: what
+    was assumed about the scene, and what the tables do not hold of it, a line each. full: the
+    configuration of the request, with what the frame needs beyond it; built: what is left of it
+    after pruning. meshes: what was decided about each object of the scene, by its name. front: what
+    the front end found besides; None where there is no scene.
     """
 
     frame: Frame
     exact: ExactFrame | None
-    degenerate_triangles: int
     notes: list[str]
     full: Config
     built: Config
@@ -135,13 +135,13 @@ def _front_end(request: RunRequest, folder: Path, steps: Steps) -> Stimulus:
     with steps.step("front_end") as step:
         if request.spans:
             written_for = spans.written_for(request.spans, config)
-            frame, exact, degenerate = spans.read_spans(request.spans, written_for), None, 0
+            frame, exact = spans.read_spans(request.spans, written_for), None
             notes: list[str] = []
             meshes, front = [], None
         else:
             scene = load_scene(request.scene, request.size, config)
             front = front_end(scene, config, step.done)
-            frame, exact, degenerate = front.frame, front.exact, front.degenerate_triangles
+            frame, exact = front.frame, front.exact
             meshes = [(item.name, item.report) for item in scene.objects if item.report]
             notes = scene.remarks + front.notes
         config = fitted(config, frame, request.units)
@@ -150,7 +150,7 @@ def _front_end(request: RunRequest, folder: Path, steps: Steps) -> Stimulus:
             raise InputError(f"its spans have no place for this scene: {reasons[0]}")
         path = folder / "spans"
         spans.write_spans(path, frame, built)
-    return Stimulus(frame, exact, degenerate, notes, config, built, path, meshes, front)
+    return Stimulus(frame, exact, notes, config, built, path, meshes, front)
 
 
 def _built(request: RunRequest, frame: Frame, config: Config) -> Config:
@@ -206,7 +206,7 @@ def _report(
 ) -> dict:  # fmt: skip
     """The contents of report.json."""
     codes, ports = _common(simulation, ideal.ports)
-    scene_error = None
+    front, scene_error = stimulus.front, None
     if ideal.scene is not None:
         scene_error = metrics.error_metrics(*_common(simulation, ideal.scene), request.config.white)
     return run_report.make_report(
@@ -224,10 +224,10 @@ def _report(
         bound_lsb=None if ideal.bound is None else float(ideal.bound),
         pruned_differ=pruned_differ,
         input_error=scene_error,
-        degenerate_triangles=stimulus.degenerate_triangles,
+        degenerate_triangles=front.degenerate_triangles if front else 0,
         mesh=[{"object": name} | dataclasses.asdict(mesh) for name, mesh in stimulus.meshes],
-        lit_facing_away=stimulus.front.lit_facing_away if stimulus.front else None,
-        empty=stimulus.front.empty if stimulus.front else None,
+        lit_facing_away=front.lit_facing_away if front else None,
+        empty=front.empty if front else None,
         wall_s={
             name: round(steps.wall_s[name], 3)
             for name in ("front_end", "model", "reference", "build", "simulate")
@@ -288,8 +288,8 @@ def run(request: RunRequest, simulate: Simulate, steps: Steps) -> dict:
         text = json.dumps(report, indent=2, allow_nan=False) + "\n"
         (folder / "report.json").write_text(text, encoding="utf-8")
         if stimulus.full != request.config:
-            name = request.config.name
-            console.note(f"the scene needs more than {name} has: {stimulus.full.name} is built")
+            asked, full = request.config.name, stimulus.full.name
+            console.note(f"the scene needs more than {asked} has: {full} is built")
         _explain(stimulus, comparison)
     return report
 

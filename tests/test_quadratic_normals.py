@@ -25,7 +25,14 @@ from phong75.model.front.scene import (
 )
 from phong75.model.front.visibility import GRID
 from phong75.model.scene_to_frame import front_end
-from phong75.model.spans import illegal_spans, pack, read_spans, unpack, write_spans
+from phong75.model.spans import (
+    illegal_spans,
+    pack,
+    read_spans,
+    unpack,
+    write_spans,
+    written_for,
+)
 from phong75.model.studies import quadratic_cases
 from phong75.model.twin.core.linear_interpolator import linear_interpolator
 from phong75.model.twin.techniques.second_difference_interpolator import (
@@ -403,6 +410,8 @@ def test_span_file_with_bends(tmp_path):
     frame.spans["last"][-1] = True
     write_spans(tmp_path / "spans", frame, QUADRATIC)
     assert np.array_equal(read_spans(tmp_path / "spans", QUADRATIC).spans, frame.spans)
+    found = written_for(tmp_path / "spans", DEFAULT)  # what `run --spans` builds
+    assert np.array_equal(read_spans(tmp_path / "spans", found).spans, frame.spans)
     with pytest.raises(InputError, match="built without normal_order 2"):
         read_spans(tmp_path / "spans", DEFAULT)
     write_spans(tmp_path / "linear", plain(spans=50), DEFAULT)

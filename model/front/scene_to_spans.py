@@ -97,16 +97,17 @@ class FrontEnd:
     frame: the picture in codes. exact: the same picture before rounding. triangles: number of
     triangles in the scene. degenerate_triangles: number of further triangles that were left out
     because they have no area. lit_facing_away: pixels that are lit although their triangle turns
-    away from the light, an effect of interpolated normals. empty: why there is no pixel, in words;
-    None if there is one. notes: what the tables of the materials do not hold as the scene has it, a
-    line each.
+    away from the light, an effect of interpolated normals; None where they are not counted: with
+    several lights or one at a place, quadratic normals, intensities, or `Scene.toward_light`.
+    empty: why there is no pixel, in words; None if there is one. notes: what the tables of the
+    materials do not hold as the scene has it, a line each.
     """
 
     frame: Frame
     exact: ExactFrame
     triangles: int
     degenerate_triangles: int
-    lit_facing_away: int = 0
+    lit_facing_away: int | None = None
     empty: str | None = None
     notes: list[str] = field(default_factory=list)
 
@@ -181,15 +182,15 @@ def make_frame(
     if config.technique != "phong":  # the intensities hold all lights
         frame.further, exact.further, exact.places = [], [], []
 
-    parts, lit_facing_away = [], 0
     counted = (
         config.technique == "phong" and not scene.toward_light
         and len(scene.lights) == 1 and not at_place and scene.interpolation not in RULES
     )  # fmt: skip
+    parts, lit_facing_away = [], 0 if counted else None
     for segments, done in visible(triangles, scene.width, scene.height):
         if len(segments):
             parts.append(_spans(triangles, segments, config, scene.interpolation, exact))
-            if dark.any() and counted:
+            if lit_facing_away is not None and dark.any():
                 lit_facing_away += _lit_pixels(parts[-1][0], segments, dark, scene.width)
         if progress:
             progress(done)

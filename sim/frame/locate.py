@@ -87,7 +87,6 @@ async def locate_stage(dut):
     folder = Path(os.environ[environment.VECTORS])
     where = json.loads((folder / "where.json").read_text())
     config = written_for(folder / "spans", TECHNIQUES[where["technique"]])
-    config = replace(config, normal_order=where["normal_order"])
     frame = read_spans(folder / "spans", config)
     message = None
     for module, inputs, expected in _vectors(frame, where["pixel"], config):
@@ -132,7 +131,7 @@ def locate(frame: Frame, pixel: int, config: Config = DEFAULT, rtl: Path | None 
                 *(("light_attenuation",) if config.attenuation else ()), "light_terms",
                 "light_sum",
             )  # fmt: skip
-        where = {"technique": config.technique, "pixel": pixel, "normal_order": config.normal_order}
+        where = {"technique": config.technique, "pixel": pixel}
         for module in modules:
             (folder / "where.json").write_text(json.dumps(where | {"module": module}))
             top, text = bench_source(module)
