@@ -87,7 +87,7 @@ class Progress:
             part = done / self._weight_all if self._weight_all else 1.0
             parts = [f"{self._done} of {self._all} tests", f"{elapsed / 60:.1f} min"]
             if part > 0.02:
-                parts.append(f"about {elapsed * (1 - part) / part / 60:.1f} min left")
+                parts.append(f"about {elapsed * max(0, 1 - part) / part / 60:.1f} min left")
             line = ", ".join(parts)
             if running := [test.partition("::")[2] or test for test in self._running]:
                 line += f"; running {', '.join(running)}"
