@@ -37,7 +37,7 @@ def verilator(source: Path, config: Config = DEFAULT) -> str:
     top = ["--top-module", source.stem]
     try:
         build.run_tool(
-            ["verilator", "--lint-only", "-Wall", "--no-timing", *top, *folders]
+            [build.VERILATOR, "--lint-only", "-Wall", "--no-timing", *top, *folders]
             + [design.SIM / "lint.vlt", source]
         )
     except BuildError as error:
