@@ -323,7 +323,14 @@ def killed_by(mutant: Mutant) -> tuple[str, bool]:
 
 def lint_message(rtl: Path) -> str:
     """Output of Verilator's -Wall for the whole design in `rtl`, as in `make lint`; "" if none."""
-    command = [build.VERILATOR, "--lint-only", "-Wall", "--no-timing", "--top-module", "phong_pipeline"]
+    command = [
+        build.VERILATOR,
+        "--lint-only",
+        "-Wall",
+        "--no-timing",
+        "--top-module",
+        "phong_pipeline",
+    ]
     try:
         for config in (DEFAULT, *CONFIGS):
             folders = [build.generate_header(config), *design.folders(rtl)]
