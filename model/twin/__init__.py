@@ -20,7 +20,6 @@ NO_TWIN = {
     "span_word": "keeps a word of a span's record for all pixels of the span",
     "turn_hold": "keeps the word of a pixel's first turn for its other turns",
     "lut_ram": "gives the word last written to the address: a light's interpolated state",
-    "rom": "gives the word at the address: `np.take` of a table of `phong75.model.tables`",
     "ram": "gives the word last written to the address: an index into the material table",
     "small_ram": "gives the word last written to the address: an index into the material table",
     "multiplier": "exact product, which `*` gives in Python",

@@ -3,11 +3,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from phong75.model.arrays import Ints, Trace
 from phong75.model.config import Config
 from phong75.model.tables import inverse_sqrt_linear_table
+from phong75.model.twin.primitives.rom import rom
 from phong75.model.twin.primitives.round_saturate import round_saturate
 
 
@@ -24,7 +23,7 @@ def lookup(operand: Ints, config: Config) -> tuple[Ints, Ints, Ints]:
     offset = aligned & ((1 << offset_bits) - 1)
     table = inverse_sqrt_linear_table(config)
     address = (high << config.root_index_bits) | segment
-    return np.take(table.value, address), np.take(table.slope, address), offset
+    return rom(address, table.value), rom(address, table.slope), offset
 
 
 def refine(value: Ints, slope: Ints, offset: Ints, config: Config) -> Ints:

@@ -14,6 +14,7 @@ from phong75.model.tables import exp_table, log_table
 from phong75.model.twin.core.specular_cosine import specular_cosine
 from phong75.model.twin.primitives.leading_zeros import leading_zeros
 from phong75.model.twin.primitives.left_shifter import left_shifter
+from phong75.model.twin.primitives.rom import rom
 from phong75.model.twin.primitives.round_saturate import round_saturate
 
 
@@ -36,7 +37,7 @@ def log_lookup(t: Ints, config: Config) -> tuple[Ints, Ints, Ints]:
     table = log_table(config)
     address = (t >> offset_bits) & ((1 << config.log_index_bits) - 1)
     offset = t & ((1 << offset_bits) - 1)
-    return np.take(table.value, address), np.take(table.slope, address), offset
+    return rom(address, table.value), rom(address, table.slope), offset
 
 
 def log_refine(e: Ints, value: Ints, slope: Ints, offset: Ints, config: Config) -> Ints:
@@ -75,7 +76,7 @@ def exp_lookup(x: Ints, config: Config) -> tuple[Ints, Ints, Ints, Ints]:
     address = (x >> offset_bits) & ((1 << config.exp_index_bits) - 1)
     offset = x & ((1 << offset_bits) - 1)
     whole = x >> config.power_log.fraction
-    return np.take(table.value, address), np.take(table.slope, address), offset, whole
+    return rom(address, table.value), rom(address, table.slope), offset, whole
 
 
 def exp_refine(value: Ints, slope: Ints, offset: Ints, config: Config) -> Ints:

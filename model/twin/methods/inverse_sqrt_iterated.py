@@ -9,6 +9,7 @@ from phong75.model.arrays import Ints, Trace
 from phong75.model.config import Config
 from phong75.model.tables import inverse_sqrt_start
 from phong75.model.twin.methods.newton_step import newton_step
+from phong75.model.twin.primitives.rom import rom
 
 #: Fraction bits of a float32.
 _FRACTION = 23
@@ -25,7 +26,7 @@ def start_table(operand: Ints, config: Config) -> Ints:
     aligned = operand << (1 - high)
     segment = aligned >> (top - config.start_index_bits) & ((1 << config.start_index_bits) - 1)
     table = inverse_sqrt_start(config)
-    return np.take(table.value, (high << config.start_index_bits) | segment)
+    return rom((high << config.start_index_bits) | segment, table.value)
 
 
 def start_fast_inverse(operand: Ints, config: Config) -> Ints:

@@ -3,11 +3,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from phong75.model.arrays import Ints, Trace
 from phong75.model.config import Config
 from phong75.model.tables import inverse_sqrt_parabolas
+from phong75.model.twin.primitives.rom import rom
 from phong75.model.twin.primitives.round_saturate import round_saturate
 
 
@@ -23,7 +22,7 @@ def lookup(operand: Ints, config: Config) -> tuple[Ints, Ints, Ints, Ints]:
     segment = (aligned >> offset_bits) & ((1 << config.quadratic_index_bits) - 1)
     address = (high << config.quadratic_index_bits) | segment
     table = inverse_sqrt_parabolas(config)
-    value, slope, curve = (np.take(c, address) for c in (table.value, table.slope, table.curve))
+    value, slope, curve = (rom(address, c) for c in (table.value, table.slope, table.curve))
     return value, slope, curve, aligned & ((1 << offset_bits) - 1)
 
 

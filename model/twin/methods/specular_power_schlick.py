@@ -11,6 +11,7 @@ from phong75.model.config import Config
 from phong75.model.tables import reciprocal_table
 from phong75.model.twin.core.specular_cosine import specular_cosine
 from phong75.model.twin.primitives.leading_zeros import leading_zeros
+from phong75.model.twin.primitives.rom import rom
 from phong75.model.twin.primitives.round_saturate import round_saturate
 
 
@@ -34,7 +35,7 @@ def reciprocal(m: Ints, config: Config) -> Ints:
     table = reciprocal_table(config)
     address = (m >> offset_bits) & ((1 << config.reciprocal_index_bits) - 1)
     offset = m & ((1 << offset_bits) - 1)
-    line = np.take(table.value, address) - ((np.take(table.slope, address) * offset) >> offset_bits)
+    line = rom(address, table.value) - ((rom(address, table.slope) * offset) >> offset_bits)
     return round_saturate(line, config.reciprocal_value_bits - config.power.bits, config.power)
 
 
