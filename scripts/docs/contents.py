@@ -144,6 +144,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "features": facts.features,
     "configurations": facts.configurations,
     "scenes": lambda: tables.scenes(_record("scenes")),
+    "techniques": lambda: tables.techniques(_record("scenes")["techniques"]),
     "hardware": lambda: tables.hardware(tables.hardware_rows(tables.HARDWARE)),
     "tests": lambda: tables.hardware(tables.hardware_rows(tables.TESTS)),
     "speed": lambda: tables.hardware(tables.hardware_rows(tables.SPEED)),

@@ -71,6 +71,40 @@ def worst_scene(record: dict[str, Any], figure: str) -> float:
     return max(run[figure] for runs in record["scenes"].values() for run in runs)
 
 
+#: What each technique's scene shows, and the source of the technique.
+TECHNIQUE_WORDS = {
+    "lamps": ("ambient, diffuse, specular and emitted light, each with its colour", "lecture notes"),
+    "coloured_lights": ("eight coloured lights", "lecture notes"),
+    "near_light": ("lights at a place, falling with the distance", "lecture notes; Phong 1975"),
+    "warnock": ("Warnock's shading: the light at the eye", "Phong 1975"),
+    "toon": ("reflectance by table: steps, Schlick's rim, n = 0.5, a W(i) with a jump",
+             "Ohbuchi and Unno 2002"),
+    "scaling": ("intensities divided by Imax", "lecture notes"),
+    "flat_and_smooth": ("flat and smooth objects in one frame", "lecture notes"),
+    "normalized_edges": ("normals of length 1 at both ends of a scan line", "Phong 1975"),
+    "coarse_torus": ("quadratic normals", "van Overveld and Wyvill 1997, Vlachos et al. 2001"),
+}  # fmt: skip
+
+
+def techniques(rows: Iterable[dict[str, Any]]) -> str:
+    """The runs of the technique scenes, of the record `scenes`."""
+    cells = [
+        (
+            f"`{row['scene']}`" + (f", {row['technique']}" if row["technique"] != "phong" else ""),
+            TECHNIQUE_WORDS[row["scene"]][0], f"`{row['configuration']}`",
+            str(row["multipliers"]), str(row["pixels"]), str(row["mismatches"]),
+            number(row["max_lsb"], 3), number(row["bound_lsb"], 3), str(row["cycles"]),
+            number(row["cycles"] / row["pixels"], 4),
+        )
+        for row in rows
+    ]  # fmt: skip
+    header = (
+        "scene", "what it shows", "configuration", "multipliers", "pixels", "RTL ≠ model",
+        "largest error, LSB", "bound, LSB", "cycles", "cycles per pixel",
+    )  # fmt: skip
+    return markdown(header, cells, left=3)
+
+
 # -- hardware, proofs, tests -----------------------------------------------------------------------
 
 
