@@ -73,7 +73,7 @@ def worst_scene(record: dict[str, Any], figure: str) -> float:
 
 #: What each technique's scene shows, and the source of the technique.
 TECHNIQUE_WORDS = {
-    "lamps": ("ambient, diffuse, specular and emitted light, each with its colour", "lecture notes"),
+    "lamps": ("ambient, diffuse, specular and emitted light, in colours", "lecture notes"),
     "coloured_lights": ("eight coloured lights", "lecture notes"),
     "near_light": ("lights at a place, falling with the distance", "lecture notes; Phong 1975"),
     "warnock": ("Warnock's shading: the light at the eye", "Phong 1975"),
