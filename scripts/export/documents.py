@@ -277,7 +277,8 @@ def ports_page(config: Config, top: str) -> str:
         out += [
             f"`write_address` is {{{number}kind (1 bit), material ({material} bits), index "
             f"({index} bits)}}. Write only while no pixel is in flight: a write changes the "
-            "pixels that are. The last write must be 4 cycles old when the first span of the frame is taken.",
+            "pixels that are. The last write must be 4 cycles old when the first span of the "
+            "frame is taken.",
             *_reflectance_writes(config),
             _table(("address", "word", "meaning", "in this configuration"), _write_rows(config)),
             _rule(config),
