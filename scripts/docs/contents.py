@@ -10,6 +10,7 @@ from typing import Any
 from phong75.model.config import DEFAULT, TECHNIQUES
 from phong75.model.front import mesh_normals
 from phong75.model.studies.methods import CONFIGS
+from phong75.model.studies.shadings import FARTHEST_FACTOR
 from phong75.scripts import recorded
 from phong75.scripts.docs import commands, facts, tables
 from phong75.sim import design
@@ -186,6 +187,7 @@ FIGURES: dict[str, Callable[[], str]] = {
     "bound.intensity": lambda: facts.above(facts.intensity_bound(), 4),
     "bound.jump": lambda: facts.above(facts.jump()),
     "configurations": lambda: str(len(CONFIGS)),
+    "warnock.farthest": lambda: f"{100 * FARTHEST_FACTOR:g}",
     "mesh.memory": facts.mesh_memory,
     "mesh.time": facts.mesh_time,
     "mesh.crease": lambda: f"{mesh_normals.DEFAULT_CREASE:g}",
