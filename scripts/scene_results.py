@@ -134,13 +134,16 @@ class TechniqueResult:
         pictures.write_picture(path, pictures.canvas(self.frame, pixels.x, pixels.y, pixels.rgb))
 
 
-def measure_technique(scene: str, technique: str = CONFIG.technique) -> TechniqueResult:
+def measure_technique(
+    scene: str, technique: str = CONFIG.technique, size: tuple[int, int] | None = None
+) -> TechniqueResult:
     """Run `scene` by `technique` twice in one simulation, without and with STALLS.
 
-    Raises InputError, BuildError, SimulationError.
+    size: of the picture, width and height; None for the scene's own. Raises InputError,
+    BuildError, SimulationError.
     """
     asked = TECHNIQUES[technique]
-    frame = front_end(load_scene(scene, None, asked), asked).frame
+    frame = front_end(load_scene(scene, size, asked), asked).frame
     config = fitted(asked, frame)
     # Whoever runs the bundled scenes has built the techniques at full speed; a build for a single
     # frame is quicker without.
