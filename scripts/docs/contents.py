@@ -9,6 +9,7 @@ from typing import Any
 
 from phong75.model.config import DEFAULT, TECHNIQUES
 from phong75.model.front import mesh_normals
+from phong75.model.studies import corner_cases
 from phong75.model.studies.methods import CONFIGS
 from phong75.model.studies.shadings import FARTHEST_FACTOR
 from phong75.scripts import recorded
@@ -173,6 +174,22 @@ TABLES: dict[str, Callable[[], str]] = {
 }
 
 
+def _undecided(scene: str) -> str:
+    """Pixels at a jump in the run of a technique's scene, of how many."""
+    row = next(r for r in _record("scenes")["techniques"] if r["scene"] == scene)
+    return f"{row['undecided']} of {tables.grouped(row['pixels'])}"
+
+
+def _case(name: str, figure: str) -> float:
+    return next(row[figure] for row in _record("stability")["rows"] if row["case"] == name)
+
+
+def _lights_error() -> float:
+    """The largest error of the corner cases with several lights, LSB."""
+    names = [case.name for case in corner_cases.cases() if case.frame.lights > 1]
+    return max(_case(name, "max_lsb") or 0.0 for name in names)
+
+
 def _highlights() -> list[float]:
     return tables.highlight_ratios(_record("tessellation")["meshes"])
 
@@ -186,6 +203,14 @@ FIGURES: dict[str, Callable[[], str]] = {
     "bound.n128": lambda: facts.above(facts.bound(128)),
     "bound.intensity": lambda: facts.above(facts.intensity_bound(), 4),
     "bound.jump": lambda: facts.above(facts.jump()),
+    "bound.mantissa": facts.mantissa_error,
+    "bound.eight-lights": lambda: facts.above(_case("eight lights, n = 128", "bound_lsb")),
+    "lights.error": lambda: facts.above(_lights_error()),
+    "span.half-vector": lambda: str(2 * DEFAULT.half_vector.bits),
+    "span.distance": lambda: str(2 * DEFAULT.depth.bits),
+    "curve.one-sided": lambda: f"{facts.one_sided_distance(0.5):.1f}",
+    "curve.equal": lambda: f"{facts.equal_distance(128):.1f}",
+    "toon.undecided": lambda: _undecided("toon"),
     "configurations": lambda: str(len(CONFIGS)),
     "warnock.farthest": lambda: f"{100 * FARTHEST_FACTOR:g}",
     "mesh.memory": facts.mesh_memory,
