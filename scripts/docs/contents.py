@@ -13,6 +13,7 @@ from phong75.model.studies import corner_cases
 from phong75.model.studies.methods import CONFIGS
 from phong75.model.studies.shadings import FARTHEST_FACTOR
 from phong75.scripts import recorded
+from phong75.scripts.configurations import BUILDS
 from phong75.scripts.docs import commands, facts, tables
 from phong75.sim import design
 
@@ -47,7 +48,21 @@ def _synthesis(*path: str) -> Any:
 
 
 def _builds() -> dict[str, Any]:
-    return _record("synth-more")["configurations"]
+    """What is recorded of BUILDS; of a build that is not, its multipliers as elaborated."""
+    found = _record("synth-more")["configurations"]
+    for name in BUILDS.keys() - found.keys():
+        resources = {"dsp": facts.modules(BUILDS[name])["multiplier"]}
+        found[name] = {"resources": resources, "clock_mhz": None}
+    return found
+
+
+def _rules() -> dict[str, Any]:
+    """The builds of `tables.RULE_BUILDS`, from the records that have them."""
+    older = {
+        of["name"]: {"resources": of["pruned"], "clock_mhz": {"median": of["pruned"]["clock_mhz"]}}
+        for of in _record("prune")["builds"] if of["name"] in TECHNIQUES
+    }  # fmt: skip
+    return _builds() | older | {DEFAULT.name: _record("synth-grade6")}
 
 
 def _mutants(what: str) -> int:
@@ -153,6 +168,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "places": lambda: tables.places(_builds()),
     "place-rules": facts.place_rules,
     "lights": lambda: tables.lights(_builds()),
+    "rule-prices": lambda: tables.rule_prices(_rules()),
     "reflectance": lambda: tables.reflectance(_builds(), _record("synth-grade6")),
     "curve-powers": facts.curve_powers,
     "shapes": facts.shapes,

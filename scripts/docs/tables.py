@@ -306,6 +306,38 @@ def lights(builds: dict[str, Any]) -> str:
     return markdown(("units", "cycles a pixel", *_BUILD, "clock, MHz", "Mpixel/s"), rows)
 
 
+#: A build for each rule of docs/shading.md that has hardware of its own.
+RULE_BUILDS = (
+    ("paper: one white light at infinity", "default"),
+    ("flat", "flat"),
+    ("Gouraud", "gouraud"),
+    ("illumination model, eight lights in turns, coloured highlights", "lights_8"),
+    ("light at a place", "placed_light"),
+    ("Warnock, or any light that falls with the distance", "falling_light"),
+    ("light at a place that falls with the distance", "placed_falling_light"),
+    ("reflectance by table", "curve"),
+    ("W(i) with a jump", "weight_jump"),
+    ("reflectance by table, four jumps of it and of W(i)", "curve_jumps"),
+    ("quadratic normals", "quadratic_normals"),
+)
+
+
+def rule_prices(builds: dict[str, dict[str, Any]]) -> str:
+    """What the rules of docs/shading.md take of a chip. builds: {name: {"resources", "clock_mhz":
+    {"median"} or None}}; a build that is not there has dashes."""
+    nothing: dict[str, Any] = {"resources": {}, "clock_mhz": None}
+    found = {name: builds.get(name, nothing) for _, name in RULE_BUILDS}
+    key, title = logic(of["resources"] for of in found.values())
+    columns = _BUILD | {"LUT sites": key}
+    rows = []
+    for rule, name in RULE_BUILDS:
+        used, clock = found[name]["resources"], found[name]["clock_mhz"]
+        cells = (number(used.get(column)) for column in columns.values())
+        rows.append((rule, f"`{name}`", *cells, number(clock and clock["median"])))
+    titles = (title if column == "LUT sites" else column for column in columns)
+    return markdown(("rule", "configuration", *titles, "clock, MHz"), rows, left=2)
+
+
 def places(builds: dict[str, Any]) -> str:
     """The builds for a light at a place, of `builds` (configurations of synth-more)."""
     words = {
