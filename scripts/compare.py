@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,10 +20,10 @@ import numpy as np
 from rich.table import Table
 
 from phong75.model import twin
-from phong75.model.analysis import error_budget, metrics, pictures, reference, run_report
+from phong75.model.analysis import error_budget, metrics, pictures, reference, run_report, undecided
 from phong75.model.analysis.pruning import BY_HAND
 from phong75.model.config import DEFAULT, Config
-from phong75.model.frame import Frame
+from phong75.model.frame import Frame, InputError, fitted
 from phong75.model.front.scene import Scene, load_scene
 from phong75.model.scene_to_frame import front_end
 from phong75.model.studies import comparison_sheet, methods, true_scene
@@ -31,6 +31,7 @@ from phong75.model.studies.comparison_sheet import Basis, Column
 from phong75.model.studies.shadings import PHONG, SHADINGS, Shading
 from phong75.model.studies.true_scene import NoTrueSurfaceError, TrueObject, TruePicture
 from phong75.scripts import console, options, recorded
+from phong75.scripts.configurations import BUILDS
 from phong75.scripts.console import Steps
 from phong75.scripts.docs import tables
 from phong75.scripts.run import first_difference, results_folder
@@ -38,7 +39,7 @@ from phong75.sim.design import PACKAGE
 from phong75.sim.frame.run_frame import SimJob, SimResult, simulate_jobs
 
 #: Version of the layout of `comparison.json`.
-SCHEMA = 1
+SCHEMA = 2
 FILES = ("sheet.png", "comparison.json")
 
 #: What the documentation shows, and the record holds.
@@ -72,10 +73,12 @@ class Shaded:
     """A scene in one shading: what the RTL made of `frame`, and what the model and the reference
     say of that.
 
-    codes: int64[width * height, 3], -1 where there is no pixel. zero_normals: of the model.
+    config: what is built. codes: int64[width * height, 3], -1 where there is no pixel.
+    zero_normals: of the model.
     """
 
     shading: Shading
+    config: Config
     frame: Frame
     simulation: SimResult
     comparison: metrics.Comparison
@@ -191,26 +194,43 @@ def shade(scene: Scene, shading: Shading, steps: Steps) -> Shaded:
 
     Raises InputError, BuildError, SimulationError.
     """
-    config = shading.config
     with steps.step(shading.name, f"{shading.title}: front end and model"):
-        frame = front_end(shading.scene_of(scene), config).frame
+        frame = front_end(shading.scene_of(scene), shading.config).frame
+        config = fitted(shading.config, frame)
         expected = twin.render(frame, config)
     with steps.step(f"{shading.name}, RTL", "") as step:
         simulation = simulate_jobs(
             [SimJob(frame)], config, progress=lambda text: step.phase(f"{shading.title}: {text}")
         )[0]
-    ideal = reference.render(frame, config)
     pixels = simulation.pixels
+    ideal = reference.render(frame, config)
+    ideal = undecided.nearest(pixels.rgb, ideal, frame, config).ideal
     both = min(len(ideal), len(pixels))  # a broken stream may be shorter or longer
     codes = np.full((frame.height, frame.width, 3), -1)
     inside = (pixels.x < frame.width) & (pixels.y < frame.height)
     codes[pixels.y[inside], pixels.x[inside]] = pixels.rgb[inside]
     return Shaded(
-        shading, frame, simulation, metrics.compare(expected, pixels),
+        shading, config, frame, simulation, metrics.compare(expected, pixels),
         metrics.error_metrics(pixels.rgb[:both], ideal[:both]),
         error_budget.bound_lsb(frame, config), twin.zero_normals(frame, config),
         codes.reshape(-1, 3),
     )  # fmt: skip
+
+
+def shade_all(scene: Scene, steps: Steps) -> tuple[list[Shaded], dict[str, str]]:
+    """`scene` in each of SHADINGS that can show it, and {title: reason} of those that cannot.
+
+    Raises as `shade`; InputError only for PHONG, which shows every scene that can be shown.
+    """
+    shaded, left_out = [], {}
+    for shading in SHADINGS:
+        try:
+            shaded.append(shade(scene, shading, steps))
+        except InputError as error:
+            if shading is PHONG:
+                raise
+            left_out[shading.title] = str(error)
+    return shaded, left_out
 
 
 def true_surface(request: CompareRequest, scene: Scene, steps: Steps) -> TrueSurface:
@@ -218,7 +238,10 @@ def true_surface(request: CompareRequest, scene: Scene, steps: Steps) -> TrueSur
     with steps.step("true surface"):
         objects = true_scene.true_objects(request.scene)
         seen = true_scene.objects_seen(PHONG.lit(scene))
-        return TrueSurface(scene, objects, seen, true_scene.true_picture(PHONG.lit(scene), objects))
+        picture = true_scene.true_picture(PHONG.lit(scene), objects)
+        if not picture.one_white_light:
+            objects = [item.as_fine_triangles() for item in objects]
+        return TrueSurface(scene, objects, seen, picture)
 
 
 def recorded_hardware(config: Config) -> dict[str, Any]:
@@ -233,6 +256,10 @@ def recorded_hardware(config: Config) -> dict[str, Any]:
     elif config in methods.CONFIGS.values():
         points = recorded.figures("sweep").get("configurations", {})
         found = next((p for name, p in points.items() if methods.CONFIGS.get(name) == config), {})
+    else:
+        builds = recorded.figures("synth-more").get("configurations", {})
+        alike = (n for n, c in BUILDS.items() if replace(config, name=c.name) == c and n in builds)
+        found = next((builds[name]["resources"] for name in alike), {})
     return {name: found.get(name) for name in ("dsp", "lut_sites", "lut_cells", "ff")}
 
 
@@ -246,7 +273,7 @@ def _row(shaded: Shaded, apart: Difference, clock_hz: float) -> dict[str, Any]:
     return {
         "shading": shaded.shading.name,
         "title": shaded.shading.title,
-        "configuration": shaded.shading.config.name,
+        "configuration": shaded.config.name,
         "interpolation": shaded.shading.interpolation,
         "pixels": len(simulation.pixels),
         "spans": len(shaded.frame.spans),
@@ -255,7 +282,7 @@ def _row(shaded: Shaded, apart: Difference, clock_hz: float) -> dict[str, Any]:
         "zero_normals": {"rtl": simulation.zero_normals, "model": shaded.zero_normals},
         "cycles": simulation.cycles,
         "fps": clock_hz / simulation.cycles if simulation.cycles else None,
-        "hardware": recorded_hardware(shaded.shading.config),
+        "hardware": recorded_hardware(shaded.config),
         "error": {
             "max_lsb": shaded.error["max_lsb"],
             "rms_lsb": shaded.error["rms_lsb"],
@@ -307,6 +334,7 @@ def notes(report: dict[str, Any]) -> list[str]:
             f"{compared} of {shaded} pixels are compared: those in which mesh and surface show the "
             "same object"
         )
+    lines += [f"{title} is left out: {why}" for title, why in report["left_out"].items()]
     if missing := [row["title"] for row in rows if row["hardware"]["dsp"] is None]:
         lines.append(f"{tables.DASH}: not recorded in results/ ({', '.join(missing)})")
     return lines
@@ -356,7 +384,7 @@ def compare(request: CompareRequest, steps: Steps) -> dict[str, Any]:
     """
     with results_folder(request.out) as folder:
         scene = load_scene(request.scene, request.size)
-        shaded = [shade(scene, shading, steps) for shading in SHADINGS]
+        shaded, left_out = shade_all(scene, steps)
         basis: TrueSurface | FromPhong
         try:
             basis = true_surface(request, scene, steps)
@@ -370,12 +398,13 @@ def compare(request: CompareRequest, steps: Steps) -> dict[str, Any]:
             "size": [scene.width, scene.height],
             "clock_hz": request.clock_hz,
             "basis": basis.as_dict(),
+            "left_out": left_out,
             "shadings": [
                 _row(one, way, request.clock_hz) for one, way in zip(shaded, apart, strict=True)
             ],
         }
         with steps.step("sheet"):
-            column = basis.column(shaded[0])
+            column = basis.column(next(one for one in shaded if one.shading is PHONG))
             detail = _sheet(folder / "sheet.png", report, shaded, apart, column)
         report["detail"] = list(detail)
         versions = {"versions": run_report.versions()}

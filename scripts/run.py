@@ -14,7 +14,7 @@ import os
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -29,7 +29,7 @@ from phong75.model.analysis import (
     run_report,
     undecided,
 )
-from phong75.model.config import DEFAULT, TECHNIQUES, Config
+from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import ExactFrame, Frame, InputError, fitted
 from phong75.model.front.mesh_files.report import MeshReport
 from phong75.model.front.scene import load_scene
@@ -39,7 +39,7 @@ from phong75.scripts import console, options
 from phong75.scripts.console import Steps
 from phong75.scripts.run_table import table
 from phong75.sim.frame import run_frame
-from phong75.sim.frame.locate import locate
+from phong75.sim.frame.locate import locatable, locate
 from phong75.sim.frame.run_frame import SimResult
 
 #: As `sim.frame.run_frame.simulate`: span file, frame, configuration, and what to call with the
@@ -301,14 +301,8 @@ def _explain(stimulus: Stimulus, comparison: metrics.Comparison) -> None:
         console.note(f"left out, but needed: {reason}")
     if comparison.first:
         console.note(first_difference(comparison.first))
-        # `locate` knows the stages of these, with normals of either order.
-        linear = replace(config, name=config.technique, normal_order=1)
-        by_technique = (
-            config in TECHNIQUES.values()
-            or (config.sums_lights and not (config.has_curves or config.weight_jumps))
-            or linear == replace(DEFAULT, name="phong")
-        )
-        if comparison.first.expected and stimulus.built == config and by_technique:
+        whole = stimulus.built == config and locatable(config)
+        if comparison.first.expected and whole:
             console.note(locate(stimulus.frame, comparison.first.index, config))
 
 

@@ -1,30 +1,44 @@
 # SPDX-License-Identifier: MIT
 """Every bundled scene through RTL, twin and reference: `phong75 scenes`.
 
-Every bundled scene at every promised size through RTL, twin and reference; one row a scene. All
-numbers also go to build/results.json.
+Every bundled scene at every promised size, and every scene of a technique at its own size, without
+and with stalls. One row a scene. All numbers also go to build/results.json, and the pictures of the
+techniques to build/techniques/.
 """
 
 from __future__ import annotations
 
 import json
 from dataclasses import dataclass
+from pathlib import Path
 
 from phong75.model import twin
-from phong75.model.analysis import error_budget, metrics, reference
+from phong75.model.analysis import error_budget, metrics, pictures, reference, undecided
 from phong75.model.config import DEFAULT as CONFIG
-from phong75.model.front.scene import bundled_scenes, load_scene
+from phong75.model.config import TECHNIQUES, Config
+from phong75.model.frame import Frame, fitted
+from phong75.model.front.scene import bundled_scenes, load_scene, technique_scenes
 from phong75.model.scene_to_frame import front_end
 from phong75.scripts import console, recorded
 from phong75.scripts.docs import tables
+from phong75.sim.build import Bench
 from phong75.sim.design import BUILD
+from phong75.sim.elaborate import instances
 from phong75.sim.frame.run_frame import SimJob, SimResult, simulate_jobs
 
 #: Version of the layout of build/results.json.
-SCHEMA = 1
+SCHEMA = 2
 FPS = 30
 SIZES = ((512, 512), (640, 480), (1920, 1080))
 CLOCK_HZ = 200e6
+
+#: The scene of a technique that Gouraud's and flat shading show as well: four kinds of light, each
+#: with its colour.
+OLDER_SHOWN = "lamps"
+
+#: The stalls of the second run of a technique: of 1024 cycles, in how many no span is offered, and
+#: in how many no pixel is taken (see `SimJob`).
+STALLS = {"idle": 64, "stall": 100, "seed": 75}
 
 
 @dataclass
@@ -72,13 +86,99 @@ def as_dict(scene: str, size: tuple[int, int], result: Result) -> dict:
     }  # fmt: skip
 
 
-def figures(measured: dict[str, list[Result]]) -> dict:
-    """What is recorded: {"clock_hz", "fps", "scenes": {scene: one `as_dict` a size}}."""
+# -- scenes of techniques --------------------------------------------------------------------------
+
+
+def technique_runs() -> list[tuple[str, str]]:
+    """(scene, technique) of each run: every technique scene, one of them by older techniques."""
+    older = [(OLDER_SHOWN, name) for name in TECHNIQUES if name != CONFIG.technique]
+    return [(scene, CONFIG.technique) for scene in technique_scenes()] + older
+
+
+@dataclass
+class TechniqueResult:
+    """A technique's scene on the build that it needs, without and with stalls.
+
+    undecided: pixels at a jump (see `model.analysis.undecided`).
+    """
+
+    scene: str
+    config: Config
+    frame: Frame
+    free: SimResult
+    stalled: SimResult
+    compared: list[metrics.Comparison]
+    error: dict
+    undecided: int
+    bound_lsb: float
+
+    def as_dict(self) -> dict:
+        """For JSON."""
+        cycles, pixels = self.free.cycles, self.free.pixels
+        return {
+            "scene": self.scene, "technique": self.config.technique,
+            "configuration": self.config.name, "lights": self.config.lights,
+            "multipliers": instances(self.config)["multiplier"],
+            "size": f"{self.frame.width}×{self.frame.height}", "pixels": len(pixels),
+            "spans": len(self.frame.spans), "cycles": cycles, "fps": CLOCK_HZ / cycles,
+            "stalled_cycles": self.stalled.cycles,
+            "mismatches": sum(c.mismatches for c in self.compared)
+            + self.free.extra_pixels + self.stalled.extra_pixels,
+            "max_lsb": self.error["max_lsb"], "bound_lsb": float(self.bound_lsb),
+            "correctly_rounded": self.error["correctly_rounded"], "undecided": self.undecided,
+        }  # fmt: skip
+
+    def picture(self, path: Path) -> None:
+        """Write the pixels of the RTL as a picture. Raises OSError."""
+        pixels = self.free.pixels
+        pictures.write_picture(path, pictures.canvas(self.frame, pixels.x, pixels.y, pixels.rgb))
+
+
+def measure_technique(
+    scene: str, technique: str = CONFIG.technique, size: tuple[int, int] | None = None
+) -> TechniqueResult:
+    """Run `scene` by `technique` twice in one simulation, without and with STALLS.
+
+    size: of the picture, width and height; None for the scene's own. Raises InputError,
+    BuildError, SimulationError.
+    """
+    asked = TECHNIQUES[technique]
+    frame = front_end(load_scene(scene, size, asked), asked).frame
+    config = fitted(asked, frame)
+    # Whoever runs the bundled scenes has built the techniques at full speed; a build for a single
+    # frame is quicker without.
+    bench = Bench("frame_bench", config, quick=config not in TECHNIQUES.values())
+    free, stalled = simulate_jobs([SimJob(frame), SimJob(frame, **STALLS)], config, bench)
+    expected = twin.render(frame, config)
+    ideal = reference.render(frame, config)
+    nearest = undecided.nearest(free.pixels.rgb, ideal, frame, config)
+    return TechniqueResult(
+        scene, config, frame, free, stalled,
+        [metrics.compare(expected, done.pixels) for done in (free, stalled)],
+        metrics.error_metrics(free.pixels.rgb, nearest.ideal), nearest.undecided,
+        error_budget.bound_lsb(frame, config),
+    )  # fmt: skip
+
+
+# -- the record ------------------------------------------------------------------------------------
+
+
+def figures(measured: dict[str, list[Result]], techniques: list[TechniqueResult]) -> dict:
+    """What is recorded: {"clock_hz", "fps", "scenes": {scene: one `as_dict` a size}, "techniques":
+    [one `as_dict` a run]}."""
     found = {
         scene: [as_dict(scene, *pair) for pair in zip(SIZES, results, strict=True)]
         for scene, results in measured.items()
     }
-    return {"clock_hz": CLOCK_HZ, "fps": FPS, "scenes": found}
+    return {
+        "clock_hz": CLOCK_HZ, "fps": FPS, "scenes": found,
+        "techniques": [result.as_dict() for result in techniques],
+    }  # fmt: skip
+
+
+def picture_path(build: Path, scene: str, technique: str) -> Path:
+    """Where `main` leaves the picture of a technique's run, below the folder `build`."""
+    return build / "techniques" / f"{scene}-{technique}.png"
 
 
 def failures(found: list[dict]) -> list[str]:
@@ -99,7 +199,14 @@ def main(record: bool) -> int:
     for scene in bundled_scenes():
         console.phase(scene)
         measured[scene] = measure(scene)
-    found = figures(measured)
+    techniques = []
+    (BUILD / "techniques").mkdir(parents=True, exist_ok=True)
+    for scene, technique in technique_runs():
+        console.phase(f"{scene}, {technique}")
+        result = measure_technique(scene, technique)
+        result.picture(picture_path(BUILD, scene, technique))
+        techniques.append(result)
+    found = figures(measured, techniques)
     rows = [run for runs in found["scenes"].values() for run in runs]
     about = {
         "schema": SCHEMA,
@@ -107,9 +214,11 @@ def main(record: bool) -> int:
         "clock_hz": CLOCK_HZ,
         "cycles_available": int(CLOCK_HZ // FPS),
     }
-    BUILD.mkdir(parents=True, exist_ok=True)
-    (BUILD / "results.json").write_text(json.dumps(about | {"rows": rows}, indent=1) + "\n")
+    contents = about | {"rows": rows, "techniques": found["techniques"]}
+    (BUILD / "results.json").write_text(json.dumps(contents, indent=1) + "\n")
     console.say(tables.scenes(found))
+    console.say(tables.techniques(found["techniques"]))
+    rows += found["techniques"]
     wrong = failures(rows)
     if record:
         recorded.record(

@@ -13,7 +13,7 @@ from PIL import Image
 from phong75.model import twin
 from phong75.model.analysis.pictures import PERFECT_LSB
 from phong75.model.config import TECHNIQUES
-from phong75.model.front.scene import SHAPES, load_scene
+from phong75.model.front.scene import SHAPES, Light, load_scene
 from phong75.model.studies import comparison_sheet, true_scene
 from phong75.model.studies.comparison_sheet import (
     Basis,
@@ -22,10 +22,17 @@ from phong75.model.studies.comparison_sheet import (
     where_they_differ,
     write_sheet,
 )
-from phong75.model.studies.shadings import PHONG, SHADINGS, Shading
+from phong75.model.studies.shadings import (
+    FARTHEST_FACTOR,
+    PHONG,
+    SHADINGS,
+    Shading,
+    light_at_eye,
+)
 from phong75.model.studies.surfaces import Sphere, Torus
 from phong75.model.studies.true_scene import NoTrueSurfaceError
 from phong75.scripts import compare, main, recorded
+from phong75.scripts.docs import tables
 from phong75.sim import design
 from phong75.sim.build import Bench, BuildError
 from phong75.sim.frame.run_frame import SimJob, SimResult, simulate_jobs
@@ -312,20 +319,58 @@ def test_each_shading_has_its_own_interpolation(start, write, tmp_path):
     assert code == 0 and found(tmp_path)["shadings"] == linear
     assert lines == ["interpolation = normalized_edges of the scene is not used: each shading "
                      "has its own"]  # fmt: skip
-    assert linear[2]["difference"] != linear[3]["difference"]
+    differences = [row["difference"] for row in linear]
+    assert all(a not in differences[:k] for k, a in enumerate(differences))
 
 
 def test_a_new_shading_is_one_line(start, write, tmp_path, monkeypatch):
     """It brings a light of its own, and is compared with the surface in that light."""
-    from_above = {"light": np.array([0.0, 0.0, 1.0])}
+
+    def from_above(scene):
+        light = np.array([0.0, 0.0, 1.0])
+        return {"light": light, "lights": [Light(light)]}
+
     line = Shading("above", "light from above", PHONG.config, lighting=from_above)
     monkeypatch.setattr(compare, "SHADINGS", (*SHADINGS, line))
     code, shown, lines = start(write(SMALL))
     assert (code, lines) == (0, [])
-    phong, above = (found(tmp_path)["shadings"][k] for k in (2, 4))
+    rows = {row["shading"]: row for row in found(tmp_path)["shadings"]}
+    phong, above = rows["phong"], rows["above"]
     assert above["title"] == "light from above" and above["hardware"] == phong["hardware"]
     assert above["difference"] != phong["difference"]
     assert above["difference"]["rms_lsb"] < 2 * phong["difference"]["rms_lsb"]
+
+
+def test_warnocks_light_is_at_the_eye_and_falls(start, write, tmp_path):
+    """The nearest vertex has the light's full factor, the farthest one the least."""
+    path = write(SMALL)
+    scene = load_scene(path)
+    (light,) = light_at_eye(scene)["lights"]
+    points, back = scene.objects[0].mesh.vertices, scene.camera.axes[2]
+    assert np.array_equal(light.direction, back)
+    factor = light.place.falloff.factor(light.place.distance(points, back))
+    depth = points @ back
+    assert factor[np.argmax(depth)] == 1
+    assert factor[np.argmin(depth)] == pytest.approx(FARTHEST_FACTOR)
+    start(path)
+    rows = {row["shading"]: row for row in found(tmp_path)["shadings"]}
+    assert rows["warnock"]["configuration"] == "default_lights_1_falloff"
+    builds = recorded.figures("synth-more")["configurations"]
+    assert rows["warnock"]["hardware"]["dsp"] == builds["falling_light"]["resources"]["dsp"]
+    assert rows["quadratic"]["configuration"] == "quadratic_normals"
+    assert rows["quadratic"]["difference"]["rms_lsb"] < rows["phong"]["difference"]["rms_lsb"]
+
+
+def test_a_shading_that_cannot_show_a_scene_is_left_out_and_said(start, write, tmp_path):
+    lamp = "[[lights]]\ndirection = [{}, -1, 1]\ncolor = [0.4, 0.3, 0.2]\n"
+    lamps = lamp.format(0) + lamp.format(1)
+    code, shown, _ = start(write(SMALL.replace("[[objects]]", f"{lamps}[[objects]]", 1)))
+    report = found(tmp_path)
+    assert code == 0 and list(report["left_out"]) == ["Phong, quadratic normals"]
+    names = [row["shading"] for row in report["shadings"]]
+    assert names == [s.name for s in SHADINGS if s.name != "quadratic"]
+    assert "Phong, quadratic normals is left out: " in shown
+    assert report["basis"]["what"] == ["sphere: fine triangles"]
 
 
 def test_a_mesh_is_compared_with_phong(start, write, tmp_path):
@@ -333,8 +378,8 @@ def test_a_mesh_is_compared_with_phong(start, write, tmp_path):
     code, shown, lines = start(obj, "--size=60x40", draw=write_sheet)
     assert (code, lines) == (0, [])
     assert "no true surface (a.obj is a mesh): differences are from Phong" in shown
-    assert "from Phong, RMS, LSB" in " ".join(shown.replace("│", " ").split())
     report = found(tmp_path)
+    assert "from Phong, RMS, LSB" in [row[0] for row in tables.comparison_rows(report)]
     assert report["basis"] == {"true_surface": False, "what": ["a.obj is a mesh"]}
     phong = next(row for row in report["shadings"] if row["shading"] == PHONG.name)
     assert phong["difference"]["max_lsb"] == 0 and phong["difference"]["pixels"] == phong["pixels"]
@@ -343,7 +388,7 @@ def test_a_mesh_is_compared_with_phong(start, write, tmp_path):
 def test_what_is_not_recorded_is_a_dash_and_said(start, write, tmp_path, monkeypatch):
     monkeypatch.setattr(recorded, "FOLDER", tmp_path / "none")
     code, shown, _ = start(write(SMALL))
-    assert code == 0 and "–: not recorded in results/ (flat, Gouraud, Phong, " in shown
+    assert code == 0 and "–: not recorded in results/ (flat, Gouraud, Warnock, " in shown
     assert found(tmp_path)["shadings"][0]["hardware"]["dsp"] is None
 
 
@@ -469,7 +514,7 @@ def test_the_record_is_what_is_measured_now(tmp_path):
     assert not differences(json.loads(json.dumps(report)), old), "make compare RECORD=1"
     with Image.open(tmp_path / "sheet.png") as new, Image.open(compare.SHOWN_PICTURE) as kept:
         np.testing.assert_array_equal(new, kept)
-    assert compare.SHOWN_PICTURE.stat().st_size < 300_000
+    assert compare.SHOWN_PICTURE.stat().st_size < 75_000 * len(SHADINGS)
 
 
 @pytest.mark.parametrize("arguments", [["cone", "--size=16x12"], ["pyramid", "--size=320x240"]])

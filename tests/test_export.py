@@ -13,13 +13,14 @@ import pytest
 import phong75
 from phong75.model import twin
 from phong75.model.config import DEFAULT, TECHNIQUES
-from phong75.model.frame import InputError
+from phong75.model.frame import InputError, with_lights
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
-from phong75.model.spans import pack, record_bits
+from phong75.model.spans import pack, record_bits, span_fields
 from phong75.scripts import export as package
-from phong75.scripts.configurations import CONFIGURATIONS
-from phong75.scripts.export import documents, export
+from phong75.scripts.configurations import BUILDS, CONFIGURATIONS
+from phong75.scripts.export import documents, export, stimulus
+from phong75.scripts.export.stimulus import span_bits
 from phong75.scripts.main import main
 from phong75.sim import build
 from phong75.sim.build import BuildError, run_tool
@@ -120,6 +121,67 @@ def simulation(exports, quick_make):
     run_tool(["verilator", "--binary", "-CFLAGS", "-fcoroutines", "--output-split", "0",
               "--top-module", "together", "together.v", *lists], cwd=exports)  # fmt: skip
     return exports
+
+
+#: Builds of each kind beyond one light at infinity, for one simulation together.
+MORE = ("lights_8_units_2", "placed_falling_light", "curve_jumps")
+
+
+def test_builds_for_lights_places_and_curves_give_the_pixels_of_their_twins(quick_make, tmp_path):
+    for name in MORE:
+        export(CONFIGURATIONS[name], tmp_path / name, size=(24, 16))
+    together(tmp_path, MORE)
+    lists = [option for name in MORE for option in ("-F", f"{name}/testbench.f")]
+    run_tool(["verilator", "--binary", "-CFLAGS", "-fcoroutines", "--output-split", "0",
+              "--top-module", "together", "together.v", *lists], cwd=tmp_path)  # fmt: skip
+    printed = run_tool(["obj_dir/Vtogether"], cwd=tmp_path)
+    pixels = sum(len(words(tmp_path / name / "sim" / "pixels.hex")) for name in MORE)
+    passed = [int(count) for count in re.findall(r"^PASS (\d+) pixels$", printed, re.MULTILINE)]
+    assert len(passed) == 3 and sum(passed) == 3 * pixels > 0 and "FAIL" not in printed
+    for name in MORE:
+        config, folder = CONFIGURATIONS[name], tmp_path / name
+        text = (folder / "rtl" / f"{name}_phong_pipeline.v").read_text()
+        declared = [(port, d, int(msb or 0) + 1) for d, msb, port in PORT.findall(text)]
+        assert declared == [(p.name, p.direction, p.bits) for p in documents.ports(config)]
+        ports = (folder / "ports.md").read_text()
+        fields = re.findall(r"^\| `\w+` \| \[(\d+):(\d+)\]", ports.partition("## Pixels")[0], re.M)
+        assert sum(int(msb) - int(lsb) + 1 for msb, lsb in fields) == span_bits(config)
+        assert len(fields) == len(span_fields(config)) - 1
+
+
+@pytest.mark.parametrize("name", BUILDS)
+def test_the_stimulus_of_a_build_uses_what_the_build_is_for(name):
+    config = CONFIGURATIONS[name]
+    frame = package._frame(None, SMALL, config)
+    package._check(frame, config, name)
+    assert with_lights(config, frame) == config
+    assert frame.lights == config.lights
+    assert (frame.half_vectors is not None) == config.span_half_vector
+    assert (frame.falloff is not None) == config.attenuation
+    assert frame.spans["bend"].any() == (config.normal_order == 2)
+    table = frame.materials
+    assert (table.curve_jumps is not None) == bool(config.curve_jumps)
+    assert (table.weight_jumps is not None) == bool(config.weight_jumps)
+
+
+def test_a_coloured_highlight_is_refused_where_the_build_has_none(tmp_path):
+    scene = tmp_path / "lamp.toml"
+    scene.write_text(
+        "[light]\nposition = [0, -3, 2]\ncolor = [1, 0.5, 0.2]\n[[objects]]\nshape = 'sphere'\n"
+    )
+    with pytest.raises(InputError, match="needs what configuration placed_light leaves out"):
+        export(CONFIGURATIONS["placed_light"], tmp_path / "out", scene=str(scene), size=SMALL)
+    assert os.listdir(tmp_path) == ["lamp.toml"]
+
+
+def test_a_large_frame_is_thinned_for_every_light():
+    config = CONFIGURATIONS["placed_falling_light"]
+    frame = package._frame(None, (240, 180), config)
+    thin = stimulus.thin(frame)
+    stride = -(-len(frame.spans) // len(thin.spans))
+    assert 1 < stride and np.array_equal(thin.half_vectors, frame.half_vectors[:, ::stride])
+    assert np.array_equal(thin.depths, frame.depths[:, ::stride])
+    assert thin.spans["last"].nonzero()[0].tolist() == [len(thin.spans) - 1]
 
 
 def words(path):

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from phong75.model import twin
-from phong75.model.analysis import error_budget, metrics, reference, undecided
+from phong75.model.analysis import metrics
 from phong75.model.config import DEFAULT as C
-from phong75.model.frame import fitted
 from phong75.model.front.scene import bundled_scenes, load_scene, technique_scenes
 from phong75.model.scene_to_frame import front_end
 from phong75.scripts import recorded, scene_results
+from phong75.scripts.docs import tables
 from phong75.sim import design
 from phong75.sim.build import Bench
 from phong75.sim.frame.locate import locate
@@ -33,32 +33,35 @@ def test_bundled_scene(scene):
         assert result.error["max_lsb"] <= result.bound_lsb <= 1, what
         assert result.error["correctly_rounded"] >= 0.999, what
         assert done.pixels.last.sum() == 1 and done.pixels.last[-1], what
-    now = scene_results.figures({scene: measured})["scenes"][scene]
+    now = scene_results.figures({scene: measured}, [])["scenes"][scene]
     for new, kept in zip(now, recorded.figures("scenes")["scenes"][scene], strict=True):
         assert not differences(new, kept), "the record is old: make scenes RECORD=1"
 
 
-@pytest.mark.parametrize("scene", technique_scenes())
-def test_technique_scene(scene):
+@pytest.mark.parametrize("scene, technique", scene_results.technique_runs())
+def test_technique_scene(scene, technique):
     """RTL = model with and without stalls, in the derived bound, at full rate.
 
-    `make scenes` does the same at full size.
+    `make scenes` does the same at full size; its record shows the same build.
     """
-    frame = front_end(load_scene(scene, (320, 240))).frame
-    config = fitted(C, frame)
-    assert config != C, "the scene needs more than the default configuration"
-    bench = Bench("frame_bench", config, quick=True)
-    jobs = [SimJob(frame), SimJob(frame, idle=64, stall=100, seed=75)]
-    expected, (free, stalled) = twin.render(frame, config), simulate_jobs(jobs, config, bench)
-    for result in (free, stalled):
-        assert result.complete and not result.illegal_spans and not result.unsupported
-        compared = metrics.compare(expected, result.pixels)
+    result = scene_results.measure_technique(scene, technique, (320, 240))
+    for done, compared in zip((result.free, result.stalled), result.compared, strict=True):
+        assert done.complete and not done.illegal_spans and not done.unsupported
         assert compared.mismatches == 0, compared.first
-    assert free.stall_cycles == 0 < stalled.stall_cycles
-    ideal = reference.render(frame, config)
-    ideal = undecided.nearest(free.pixels.rgb, ideal, frame, config).ideal
-    error = np.abs(free.pixels.rgb - ideal).max()
-    assert error <= error_budget.bound_lsb(frame, config)
+    assert result.free.stall_cycles == 0 < result.stalled.stall_cycles
+    assert result.error["max_lsb"] <= result.bound_lsb
+    kept = {(r["scene"], r["technique"]): r for r in recorded.figures("scenes")["techniques"]}
+    row, now = kept[scene, technique], result.as_dict()
+    for key in ("configuration", "lights", "multipliers"):
+        assert row[key] == now[key], "the record is old: make scenes RECORD=1"
+    assert row["mismatches"] == 0 and row["max_lsb"] <= row["bound_lsb"]
+    assert row["size"] == "640×480"
+
+
+def test_every_technique_scene_says_what_it_shows():
+    assert set(tables.TECHNIQUE_WORDS) == set(technique_scenes())
+    shown = {run[0] for run in scene_results.technique_runs()}
+    assert shown == set(technique_scenes())
 
 
 def test_each_pixel_is_shaded_once():

@@ -11,8 +11,8 @@ import pytest
 
 from phong75.model import twin
 from phong75.model.analysis import error_budget, metrics, pruning, reference
+from phong75.model.config import CURVE_BUILDS, LIGHT_BUILDS, PLACE_BUILDS, TECHNIQUES, UNITS, Config
 from phong75.model.config import DEFAULT as C
-from phong75.model.config import TECHNIQUES, UNITS, Config
 from phong75.model.frame import Frame, FurtherLight, InputError, fitted
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
@@ -21,7 +21,7 @@ from phong75.model.studies.random_frames import random_frame, random_lights
 from phong75.model.twin.lights import lights_unit
 from phong75.sim import design
 from phong75.sim.build import Bench
-from phong75.sim.frame.locate import locate
+from phong75.sim.frame.locate import locatable, locate
 from phong75.sim.frame.run_frame import SimJob, simulate_jobs
 from tests.configuration_tests import unrelated
 
@@ -87,6 +87,14 @@ def test_a_light_that_adds_nothing_changes_no_bit():
     several = dataclasses.replace(frame, further=further)
     assert fitted(C, several).sums_lights and not fitted(C, frame).sums_lights
     assert metrics.compare(twin.render(frame), twin.render(several)).mismatches == 0
+
+
+def test_designs_whose_modules_are_known_can_be_located():
+    known = [*TECHNIQUES.values(), *LIGHT_BUILDS.values(), *PLACE_BUILDS.values()]
+    assert all(map(locatable, [*known, dataclasses.replace(C, normal_order=2)]))
+    curves = dataclasses.replace(LIGHT_BUILDS["lights_8"], power_method="curve")
+    pruned = dataclasses.replace(C, two_sided=False)
+    assert not any(map(locatable, [*CURVE_BUILDS.values(), curves, pruned]))
 
 
 def test_a_broken_design_is_located(tmp_path):

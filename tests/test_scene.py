@@ -50,7 +50,8 @@ def test_bundled_scenes():
         "cone", "pyramid", "sphere", "still_life", "teapot", "torus",
     }  # fmt: skip
     assert set(technique_scenes()) == {
-        "coarse_torus", "coloured_lights", "lamps", "near_light", "toon", "warnock",
+        "coarse_torus", "coloured_lights", "flat_and_smooth", "lamps", "near_light",
+        "normalized_edges", "scaling", "toon", "warnock",
     }  # fmt: skip
     for name in (*bundled_scenes(), *technique_scenes()):
         scene = load_scene(name)

@@ -291,7 +291,7 @@ def bundled_scenes() -> list[str]:
 
 
 def technique_scenes() -> list[str]:
-    """Sorted names of the bundled scenes that show a technique beyond the default configuration."""
+    """Sorted names of the bundled scenes that show one technique each."""
     return sorted(p.stem for p in TECHNIQUE_SCENES.glob("*.toml"))
 
 

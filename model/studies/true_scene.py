@@ -3,7 +3,8 @@
 
 A scene file names its shapes. Each shape is made anew from fine triangles, which decide what each
 pixel shows. The normal at a pixel is the exact normal of the surface where `surfaces` knows the
-surface (sphere, torus), and else the normal of the fine mesh. A mesh file holds triangles and not
+surface (sphere, torus) and one white light at infinity shines on it, and else the normal of the
+fine mesh. A mesh file holds triangles and not
 the surface that they stand for, and a crease is meant as it is: a scene with one of them has no
 true picture.
 """
@@ -22,6 +23,7 @@ import numpy as np
 from phong75.model.analysis import reference
 from phong75.model.arrays import Ints, Reals
 from phong75.model.config import DEFAULT
+from phong75.model.frame import fitted
 from phong75.model.front.camera import Camera
 from phong75.model.front.mesh import Mesh, normalize, rotation_matrix
 from phong75.model.front.scene import SHAPES, Scene, SceneObject, bundled_path
@@ -57,6 +59,12 @@ class TrueObject:
     matrix: Reals
     shift: Reals
 
+    def as_fine_triangles(self) -> TrueObject:
+        """The same without exact normals."""
+        return self if self.surface is None else replace(
+            self, how=f"{self.how.partition(':')[0]}: fine triangles", surface=None
+        )  # fmt: skip
+
     def normals(self, origin: Reals, back: Reals, farthest: float) -> Reals:
         """Normals where rays meet `surface`, scene axes, float64[n, 3], NaN where they miss it.
 
@@ -74,11 +82,13 @@ class TruePicture:
     """The true picture of a scene; arrays have one row per pixel, n = width * height.
 
     value: float64[n, 3], 255 S; NaN where no surface is seen. item: int64[n], number of the object
-    that the pixel shows, -1 for none.
+    that the pixel shows, -1 for none. one_white_light: whether one white light at infinity, and no
+    other kind of light or highlight, makes the picture: only then are normals exact.
     """
 
     value: Reals
     item: Ints
+    one_white_light: bool = True
 
 
 def true_objects(name_or_path: str | Path) -> list[TrueObject]:
@@ -141,7 +151,7 @@ def true_picture(scene: Scene, objects: Sequence[TrueObject]) -> TruePicture:
     picture = _rendered(replace(scene, objects=items))
     for k, true in enumerate(objects):
         pixel = np.flatnonzero(picture.item == k)
-        if true.surface is None or not len(pixel):
+        if true.surface is None or not picture.one_white_light or not len(pixel):
             continue
         normal = true.normals(*_rays(scene.camera, pixel, scene.width, scene.height))
         seen = np.isfinite(normal).all(axis=1)
@@ -160,14 +170,15 @@ def _rendered(scene: Scene) -> TruePicture:
     bits = max(DEFAULT.material_bits, (len(items) - 1).bit_length())
     config = replace(DEFAULT, material_bits=bits)
     front = front_end(replace(scene, objects=items, materials=materials), config)
+    built = fitted(config, front.frame)
     spans = front.frame.spans
     pixels = span_walker(spans, 0, pixel_count(spans), config)
     place = pixels.y * scene.width + pixels.x
     value = np.full((scene.width * scene.height, 3), np.nan)
     item = np.full(len(value), -1, np.int64)
-    value[place] = reference.render_exact(front.frame, front.exact, config)
+    value[place] = reference.render_exact(front.frame, front.exact, built)
     item[place] = spans["material"][pixels.span]
-    return TruePicture(value, item)
+    return TruePicture(value, item, built == config)
 
 
 def _rays(camera: Camera, pixel: Ints, width: int, height: int) -> tuple[Reals, Reals, float]:

@@ -9,8 +9,11 @@ from typing import Any
 
 from phong75.model.config import DEFAULT, TECHNIQUES
 from phong75.model.front import mesh_normals
+from phong75.model.studies import corner_cases
 from phong75.model.studies.methods import CONFIGS
+from phong75.model.studies.shadings import FARTHEST_FACTOR
 from phong75.scripts import recorded
+from phong75.scripts.configurations import BUILDS
 from phong75.scripts.docs import commands, facts, tables
 from phong75.sim import design
 
@@ -45,7 +48,21 @@ def _synthesis(*path: str) -> Any:
 
 
 def _builds() -> dict[str, Any]:
-    return _record("synth-more")["configurations"]
+    """What is recorded of BUILDS; of a build that is not, its multipliers as elaborated."""
+    found = _record("synth-more")["configurations"]
+    for name in BUILDS.keys() - found.keys():
+        resources = {"dsp": facts.modules(BUILDS[name])["multiplier"]}
+        found[name] = {"resources": resources, "clock_mhz": None}
+    return found
+
+
+def _rules() -> dict[str, Any]:
+    """The builds of `tables.RULE_BUILDS`, from the records that have them."""
+    older = {
+        of["name"]: {"resources": of["pruned"], "clock_mhz": {"median": of["pruned"]["clock_mhz"]}}
+        for of in _record("prune")["builds"] if of["name"] in TECHNIQUES
+    }  # fmt: skip
+    return _builds() | older | {DEFAULT.name: _record("synth-grade6")}
 
 
 def _mutants(what: str) -> int:
@@ -144,12 +161,14 @@ TABLES: dict[str, Callable[[], str]] = {
     "features": facts.features,
     "configurations": facts.configurations,
     "scenes": lambda: tables.scenes(_record("scenes")),
+    "techniques": lambda: tables.techniques(_record("scenes")["techniques"]),
     "hardware": lambda: tables.hardware(tables.hardware_rows(tables.HARDWARE)),
     "tests": lambda: tables.hardware(tables.hardware_rows(tables.TESTS)),
     "speed": lambda: tables.hardware(tables.hardware_rows(tables.SPEED)),
     "places": lambda: tables.places(_builds()),
     "place-rules": facts.place_rules,
     "lights": lambda: tables.lights(_builds()),
+    "rule-prices": lambda: tables.rule_prices(_rules()),
     "reflectance": lambda: tables.reflectance(_builds(), _record("synth-grade6")),
     "curve-powers": facts.curve_powers,
     "shapes": facts.shapes,
@@ -171,6 +190,22 @@ TABLES: dict[str, Callable[[], str]] = {
 }
 
 
+def _undecided(scene: str) -> str:
+    """Pixels at a jump in the run of a technique's scene, of how many."""
+    row = next(r for r in _record("scenes")["techniques"] if r["scene"] == scene)
+    return f"{row['undecided']} of {tables.grouped(row['pixels'])}"
+
+
+def _case(name: str, figure: str) -> float:
+    return next(row[figure] for row in _record("stability")["rows"] if row["case"] == name)
+
+
+def _lights_error() -> float:
+    """The largest error of the corner cases with several lights, LSB."""
+    names = [case.name for case in corner_cases.cases() if case.frame.lights > 1]
+    return max(_case(name, "max_lsb") or 0.0 for name in names)
+
+
 def _highlights() -> list[float]:
     return tables.highlight_ratios(_record("tessellation")["meshes"])
 
@@ -184,7 +219,16 @@ FIGURES: dict[str, Callable[[], str]] = {
     "bound.n128": lambda: facts.above(facts.bound(128)),
     "bound.intensity": lambda: facts.above(facts.intensity_bound(), 4),
     "bound.jump": lambda: facts.above(facts.jump()),
+    "bound.mantissa": facts.mantissa_error,
+    "bound.eight-lights": lambda: facts.above(_case("eight lights, n = 128", "bound_lsb")),
+    "lights.error": lambda: facts.above(_lights_error()),
+    "span.half-vector": lambda: str(2 * DEFAULT.half_vector.bits),
+    "span.distance": lambda: str(2 * DEFAULT.depth.bits),
+    "curve.one-sided": lambda: f"{facts.one_sided_distance(0.5):.1f}",
+    "curve.equal": lambda: f"{facts.equal_distance(128):.1f}",
+    "toon.undecided": lambda: _undecided("toon"),
     "configurations": lambda: str(len(CONFIGS)),
+    "warnock.farthest": lambda: f"{100 * FARTHEST_FACTOR:g}",
     "mesh.memory": facts.mesh_memory,
     "mesh.time": facts.mesh_time,
     "mesh.crease": lambda: f"{mesh_normals.DEFAULT_CREASE:g}",

@@ -301,6 +301,37 @@ def curve_powers() -> str:
     return markdown(("n", "largest distance, LSB"), rows, left=1)
 
 
+def _chord_distance(ends: np.ndarray, n: float) -> float:
+    """How far straight lines over 1 - cos(s) are from cos(s)**n at W = 1, LSB: chords between the
+    `ends` (float64[S + 1], increasing), each moved by half of its largest error, not rounded."""
+    part = np.linspace(0, 1, 33)[:, None]
+    value = np.power(np.clip(1 - (ends[:-1] + part * np.diff(ends)), 0, 1), n)
+    bend = value - (value[0] + part * (value[-1] - value[0]))
+    return C.white * float(np.ptp(bend, axis=0).max()) / 2
+
+
+def one_sided_distance(n: float) -> float:
+    """`_chord_distance` of as many lines as a curve has, in octaves from 1 - cos(s) = 0 alone."""
+    octaves = 1 << C.curve_octave_bits
+    lines = (1 << C.segment_bits) // octaves
+    begins = [0.0 if k == octaves - 1 else 2.0 ** -(k + 1) for k in range(octaves)]
+    parts = [np.linspace(begin, 2.0**-k, lines + 1) for k, begin in enumerate(begins)]
+    return _chord_distance(np.unique(np.concatenate(parts)), n)
+
+
+def equal_distance(n: float) -> float:
+    """`_chord_distance` of as many lines as a curve has, all of one length."""
+    return _chord_distance(np.linspace(0, 1, (1 << C.segment_bits) + 1), n)
+
+
+def mantissa_error() -> str:
+    """The relative rounding of a normal's mantissas, as it is read: 1.32·10⁻⁵, rounded up."""
+    bound = error_budget.direction(C)
+    power = math.floor(math.log10(bound))
+    digits = str(-power).translate(str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    return f"{above(bound / 10**power)}·10⁻{digits}"
+
+
 def features() -> str:
     """The fields of Config that pruning decides on, and what a build lacks without each."""
     rows = ((f"`{row.feature}`", row.saves) for row in prune(_frame(1.0, 10.0))[1])

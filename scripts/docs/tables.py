@@ -71,6 +71,40 @@ def worst_scene(record: dict[str, Any], figure: str) -> float:
     return max(run[figure] for runs in record["scenes"].values() for run in runs)
 
 
+#: What each technique's scene shows, and the source of the technique.
+TECHNIQUE_WORDS = {
+    "lamps": ("ambient, diffuse, specular and emitted light, in colours", "lecture notes"),
+    "coloured_lights": ("eight coloured lights", "lecture notes"),
+    "near_light": ("lights at a place, falling with the distance", "lecture notes; Phong 1975"),
+    "warnock": ("Warnock's shading: the light at the eye", "Phong 1975"),
+    "toon": ("reflectance by table: steps, Schlick's rim, n = 0.5, a W(i) with a jump",
+             "Ohbuchi and Unno 2002"),
+    "scaling": ("intensities divided by Imax", "lecture notes"),
+    "flat_and_smooth": ("flat and smooth objects in one frame", "lecture notes"),
+    "normalized_edges": ("normals of length 1 at both ends of a scan line", "Phong 1975"),
+    "coarse_torus": ("quadratic normals", "van Overveld and Wyvill 1997, Vlachos et al. 2001"),
+}  # fmt: skip
+
+
+def techniques(rows: Iterable[dict[str, Any]]) -> str:
+    """The runs of the technique scenes, of the record `scenes`."""
+    cells = [
+        (
+            f"`{row['scene']}`" + (f", {row['technique']}" if row["technique"] != "phong" else ""),
+            TECHNIQUE_WORDS[row["scene"]][0], f"`{row['configuration']}`",
+            str(row["multipliers"]), str(row["pixels"]), str(row["mismatches"]),
+            number(row["max_lsb"], 3), number(row["bound_lsb"], 3), str(row["cycles"]),
+            number(row["cycles"] / row["pixels"], 4),
+        )
+        for row in rows
+    ]  # fmt: skip
+    header = (
+        "scene", "what it shows", "configuration", "multipliers", "pixels", "RTL ≠ model",
+        "largest error, LSB", "bound, LSB", "cycles", "cycles per pixel",
+    )  # fmt: skip
+    return markdown(header, cells, left=3)
+
+
 # -- hardware, proofs, tests -----------------------------------------------------------------------
 
 
@@ -270,6 +304,38 @@ def lights(builds: dict[str, Any]) -> str:
         rate = f"{clock['median'] / config.turns:.0f}" if clock else DASH
         rows.append((str(config.units), str(config.turns), *_build(found), rate))
     return markdown(("units", "cycles a pixel", *_BUILD, "clock, MHz", "Mpixel/s"), rows)
+
+
+#: A build for each rule of docs/shading.md that has hardware of its own.
+RULE_BUILDS = (
+    ("paper: one white light at infinity", "default"),
+    ("flat", "flat"),
+    ("Gouraud", "gouraud"),
+    ("illumination model, eight lights in turns, coloured highlights", "lights_8"),
+    ("light at a place", "placed_light"),
+    ("Warnock, or any light that falls with the distance", "falling_light"),
+    ("light at a place that falls with the distance", "placed_falling_light"),
+    ("reflectance by table", "curve"),
+    ("W(i) with a jump", "weight_jump"),
+    ("reflectance by table, four jumps of it and of W(i)", "curve_jumps"),
+    ("quadratic normals", "quadratic_normals"),
+)
+
+
+def rule_prices(builds: dict[str, dict[str, Any]]) -> str:
+    """What the rules of docs/shading.md take of a chip. builds: {name: {"resources", "clock_mhz":
+    {"median"} or None}}; a build that is not there has dashes."""
+    nothing: dict[str, Any] = {"resources": {}, "clock_mhz": None}
+    found = {name: builds.get(name, nothing) for _, name in RULE_BUILDS}
+    key, title = logic(of["resources"] for of in found.values())
+    columns = _BUILD | {"LUT sites": key}
+    rows = []
+    for rule, name in RULE_BUILDS:
+        used, clock = found[name]["resources"], found[name]["clock_mhz"]
+        cells = (number(used.get(column)) for column in columns.values())
+        rows.append((rule, f"`{name}`", *cells, number(clock and clock["median"])))
+    titles = (title if column == "LUT sites" else column for column in columns)
+    return markdown(("rule", "configuration", *titles, "clock, MHz"), rows, left=2)
 
 
 def places(builds: dict[str, Any]) -> str:

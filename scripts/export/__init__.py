@@ -19,11 +19,12 @@ from pathlib import Path
 import phong75
 from phong75.model.analysis import pruning
 from phong75.model.config import DEFAULT, Config
-from phong75.model.frame import Frame, InputError, fitted
-from phong75.model.front.scene import Material, load_scene
+from phong75.model.frame import Frame, InputError, with_lights
+from phong75.model.front.scene import WHITE, Material, Scene, load_scene
 from phong75.model.registers import writes
 from phong75.model.scene_to_frame import front_end
 from phong75.model.twin.core.register_map import unsupported_write
+from phong75.model.twin.lights.light_map import unsupported_light_write
 from phong75.model.twin.pruning.span_guard import span_guard
 from phong75.model.verilog import header
 from phong75.scripts import console, options
@@ -31,8 +32,8 @@ from phong75.scripts.export import documents, stimulus, verilog
 from phong75.sim import design
 from phong75.sim.elaborate import instances
 
-#: What the stimulus shows unless a scene is named, and its size unless one is given.
-SCENE, SIZE = "still_life", (48, 32)
+#: Size of the stimulus unless one is given.
+SIZE = (48, 32)
 
 #: The file that makes a folder an export.
 MANIFEST = "export.json"
@@ -60,7 +61,8 @@ def export(
     """Write the export of `config` into the folder `out`; returns its files, sorted.
 
     prefix: of every module name; None for the configuration's name. scene: what the stimulus
-    shows, by name or path; None for SCENE, in materials that `config` can show. size: of the
+    shows, by name or path; None for `default_scene`, in lights and materials that `config` can
+    show. size: of the
     picture, width and height; None for SIZE, or for the scene's own if `prune` is set. prune: leave
     out of the hardware what this picture does not need, which takes a scene.
 
@@ -73,9 +75,10 @@ def export(
     if prune and not scene:
         raise InputError("pruning needs a scene: what to keep depends on the picture")
     frame = _frame(scene, size if size or prune else SIZE, config)
-    config = fitted(config, frame)
+    scene = scene or default_scene(config)
+    config = with_lights(config, frame)
     if prune:
-        name = f"{config.name}-{Path(scene or '').stem}"
+        name = f"{config.name}-{Path(scene).stem}"
         config = dataclasses.replace(pruning.prune(frame, config)[0], name=name)
     if prefix is None:
         prefix = re.sub(r"\W", "_", config.name, flags=re.ASCII) + "_"
@@ -83,16 +86,16 @@ def export(
     if not _PREFIX.fullmatch(prefix):
         raise InputError(f"the prefix `{prefix}` is not the beginning of a Verilog name")
     if not prune:
-        _check(frame, config, scene or SCENE)
+        _check(frame, config, scene)
     width, height = frame.width, frame.height
-    shown = f"{Path(scene or SCENE).name} at {width}x{height}"
+    shown = f"{Path(scene).name} at {width}x{height}"
     files = _files(config, prefix, stimulus.thin(frame), shown, prune)
     names = sorted([*files, MANIFEST])
     manifest = {
         "phong75": phong75.__version__,
         "configuration": config.name,
         "prefix": prefix,
-        "scene": Path(scene or SCENE).name,
+        "scene": Path(scene).name,
         "size": [width, height],
         "pruned": prune,
         "fields": config.as_dict(),
@@ -103,23 +106,53 @@ def export(
     return names
 
 
+def default_scene(config: Config) -> str:
+    """The bundled scene that the stimulus of `config` shows unless another one is named: one that
+    uses the lights, normals, curves and jumps of `config`."""
+    if config.span_half_vector:
+        return "near_light"
+    if config.attenuation:
+        return "warnock"
+    if config.sums_lights:
+        return "coloured_lights"
+    if config.normal_order == 2:
+        return "coarse_torus"
+    return "toon" if config.curve_jumps or config.weight_jumps else "still_life"
+
+
 def _frame(scene: str | None, size: tuple[int, int] | None, config: Config) -> Frame:
-    """The frame of `scene`; for None, of SCENE in materials that `config` can show.
+    """The frame of `scene`; for None, of `default_scene` as `config` can show it.
 
     Raises InputError, also if nothing of it is in the picture.
     """
-    loaded = load_scene(scene or SCENE, size, config=config)
+    loaded = load_scene(scene or default_scene(config), size, config=config)
     if scene is None:
-        loaded.materials = [_within(material, config) for material in loaded.materials]
-        loaded.two_sided &= config.two_sided
+        _fit(loaded, config)
     frame = front_end(loaded, config).frame
     if not len(frame.spans):
         raise InputError(f"{scene}: the picture shows nothing, so that there is no stimulus")
     return frame
 
 
+def _fit(scene: Scene, config: Config) -> None:
+    """Take from `scene` what `config` leaves out: lights, the colours of their highlights, their
+    fall, and parts of materials."""
+    scene.materials = [_within(material, config) for material in scene.materials]
+    scene.two_sided &= config.two_sided
+    scene.lights = scene.lights[: config.lights]
+    if not config.highlight_colour:
+        scene.lights = [dataclasses.replace(light, specular=WHITE) for light in scene.lights]
+    if not config.attenuation:
+        scene.lights = [
+            dataclasses.replace(light, place=dataclasses.replace(light.place, falloff=None))
+            for light in scene.lights
+        ]
+
+
 def _within(material: Material, config: Config) -> Material:
-    """`material` without what `config` has left out by hand: colour, a varying W, or any."""
+    """`material` without what `config` leaves out: colour, a varying W, any W, curves of cos(s)."""
+    if not config.has_curves:
+        material = dataclasses.replace(material, curve=None, n=max(material.n, 1.0))
     if config.channels == 1:
         material = dataclasses.replace(material, color=(material.color[1],) * 3)
     if not (config.specular and config.weight_function):
@@ -135,12 +168,11 @@ def _check(frame: Frame, config: Config, scene: str) -> None:
     full = dataclasses.replace(
         config, **{name: getattr(DEFAULT, name) for name in pruning.FEATURES}
     )
-    if config == full:
-        return
-    needed = pruning.missing(frame, config, full)
+    needed = pruning.missing(frame, config, full) if config != full else []
+    unsupported = unsupported_light_write if config.sums_lights else unsupported_write
     flagged = config.technique == "phong" and (
         span_guard(frame.spans, config).any()
-        or any(unsupported_write(*write, config) for write in writes(frame, config))
+        or any(unsupported(*write, config) for write in writes(frame, config))
     )
     if needed or flagged:
         why = f": {needed[0]}" if needed else ""

@@ -30,13 +30,14 @@ def ports(config: Config) -> list[Port]:
     """The ports of phong_pipeline, in the order of its declaration."""
     spans, pixels = f"see [spans](#{_SPANS})", f"see [pixels](#{_PIXELS})"
     port_map = f"see [write port](#{_WRITE_PORT})"
+    address = "{light, kind, material, index}" if config.light_bits else "{kind, material, index}"
     return [
         Port("clk", "input", 1, "", "clock; every register is set at its rising edge"),
         Port("reset", "input", 1, "",
              "synchronous; one cycle drops every span and pixel in flight and keeps registers, "
              "material table and lookup tables"),
         Port("write_enable", "input", 1, "", "1: `write_word` goes to `write_address`"),
-        Port("write_address", "input", address_bits(config), "{kind, material, index}", port_map),
+        Port("write_address", "input", address_bits(config), address, port_map),
         Port("write_word", "input", word_bits(config), "depends on the address", port_map),
         Port("s_axis_tvalid", "input", 1, "", "a span is offered"),
         Port("s_axis_tready", "output", 1, "", "the span is taken if `s_axis_tvalid` is 1, too"),
@@ -80,7 +81,24 @@ def _span_meaning(field: SpanField, config: Config) -> tuple[str, str, str]:
     }  # fmt: skip
     if field.name in whole:
         return field.name, f"u{field.bits}.0", whole[field.name]
-    what, _, axis = field.name.partition("_")
+    name, of_light = field.name, ""
+    if config.sums_lights:
+        unit = 0
+        if name[-1].isdigit():
+            name, _, number = name.rpartition("_")
+            unit = int(number)
+        of_light = " of the light" if config.lights == 1 else f" of light {unit}"
+        if config.turns > 1:
+            of_light = f"{of_light} of the turn" if config.units > 1 else " of the turn's light"
+    what, _, axis = name.partition("_")
+    if axis == "depth":
+        meaning = {
+            "start": f"distance{of_light} at the centre of the first pixel",
+            "step": f"change of the distance{of_light} from one pixel to the next",
+        }[what]
+        return field.name, str(config.depth), f"{meaning}; its table of factors spans 0 to 1"
+    if what == "half":
+        return field.name, str(config.half_vector), f"half vector{of_light}, {axis}"
     if config.technique != "phong":
         colour = _COLOURS["xyz".index(axis)] if config.channels == 3 else "grey"
         where = (
@@ -94,11 +112,12 @@ def _span_meaning(field: SpanField, config: Config) -> tuple[str, str, str]:
         name = "\\|N\\|²" if what == "square" else "\\|N × h\\|²"
         order = ("value", "first difference", "second difference")[int(axis)]
         return field.name, str(config.squared), f"{name} over the pixels of the span: {order}"
+    in_frame = of_light and f" in the frame{of_light}"
     if what == "bend":
         return field.name, str(config.bend), f"change of step_{axis} from one pixel to the next"
     meaning = {
-        "start": f"normal's {axis} at the centre of the first pixel",
-        "step": f"change of the normal's {axis} from "
+        "start": f"normal's {axis} at the centre of the first pixel{in_frame}",
+        "step": f"change of the normal's {axis}{in_frame} from "
         + (
             "one pixel to the next" if config.normal_order == 1 else "the first pixel to the second"
         ),
@@ -145,14 +164,19 @@ def _write_rows(config: Config) -> list[tuple]:
         weight = fixed(config.constant_weight)
     elif not config.weight_function:
         weight = "one weight per material: write interval 0 only, with a step of 0"
+    light = "light, " if config.light_bits else ""
+    any_light = "any, " if light else ""
     rows = [
-        ("{0, material, k}", f"{{step {step}, left {code}}}",
+        (f"{{{any_light}0, material, k}}", f"{{step {step}, left {code}}}",
          f"interval k of {config.weight_points - 1} of W(i), equally spaced in cos(i): W at its "
          "left end, and the change to its right end", weight),
     ]  # fmt: skip
+    terms = ("Cp d", "Cp (1 - d)")
+    if config.sums_lights:
+        terms = ("e + ka Ia and ka La of all lights", "kd Ld of the light")
     for name, term, there, constant in (
-        ("ambient", "Cp d", config.ambient, config.constant_ambient),
-        ("diffuse", "Cp (1 - d)", config.diffuse, config.constant_diffuse),
+        ("ambient", terms[0], config.ambient, config.constant_ambient),
+        ("diffuse", terms[1], config.diffuse, config.constant_diffuse),
     ):
         for c, colour in enumerate(_COLOURS):
             state = "writable"
@@ -162,7 +186,8 @@ def _write_rows(config: Config) -> list[tuple]:
                 state = left_out
             elif constant:
                 state = fixed([constant[c]])
-            address = f"{{1, material, {FIELDS[name] + c}}}"
+            place = light if name == "diffuse" else any_light
+            address = f"{{{place}1, material, {FIELDS[name] + c}}}"
             rows.append((address, str(code), f"{term}, {colour}", state))
     power = "writable"
     if not config.specular:
@@ -177,23 +202,42 @@ def _write_rows(config: Config) -> list[tuple]:
             [] if config.log_octaves else [f"other n from {least:g} on"]
         )
         power = "; ".join([power, *limits])
-    rows.append((f"{{1, material, {FIELDS['exponent']}}}", str(n), "n, 1 to 128", power))
+    if config.has_curves:
+        power = "not used: lines of the curve take its place"
+    rows.append((f"{{{any_light}1, material, {FIELDS['exponent']}}}", str(n), "n, 1 to 128", power))
     for k, axis in enumerate("xz"):
         state = "writable" if config.specular else "left out: no effect"
         if config.constant_half_vector:
             state = fixed([config.constant_half_vector[k]])
-        rows.append((f"{{1, any, {FIELDS[f'half_{axis}']}}}", str(half),
+        if config.span_half_vector:
+            state = "left out: spans bring their half vectors"
+        rows.append((f"{{{light}1, any, {FIELDS[f'half_{axis}']}}}", str(half),
                      f"half vector h between light and eye, {axis}", state))  # fmt: skip
     state = "writable" if config.two_sided else left_out
-    rows.append((f"{{1, any, {FIELDS['control']}}}", "bit 0",
+    rows.append((f"{{{any_light}1, any, {FIELDS['control']}}}", "bit 0",
                  "1: two-sided, shade with \\|Zn\\|", state))  # fmt: skip
+    if config.light_bits:
+        rows.append((f"{{any, 1, any, {FIELDS['control']}}}", "bits 3 to 1",
+                     "lights of the frame minus 1", "writable"))  # fmt: skip
+    if config.highlight_colour:
+        rows += [
+            (f"{{{light}1, material, {FIELDS['highlight'] + c}}}", str(code),
+             f"ks Ls of the light, {colour}",
+             "left out: the material's red serves for all" if c and config.channels == 1
+             else "writable" if config.specular else "left out: no effect")
+            for c, colour in enumerate(_COLOURS)
+        ]  # fmt: skip
+    if config.attenuation:
+        rows.append((f"{{{light}1, k div 16, {FIELDS['attenuation']} + k mod 16}}",
+                     f"{{step {step}, left {code}}}",
+                     f"interval k of {config.weight_points - 1} of the light's factor, equally "
+                     "spaced in the distance from 0 to 1", "every interval"))  # fmt: skip
     return [(f"`{address}`", *rest) for address, *rest in rows]
 
 
 def ports_page(config: Config, top: str) -> str:
     """The text of ports.md for the top level `top`. Raises BuildError."""
     port_rows = [(f"`{p.name}`", p.direction, p.bits, p.format, p.meaning) for p in ports(config)]
-    first = first_pixel_latency(config)
     out = [
         f"# Ports of `{top}`, configuration `{config.name}`",
         "A format `s1.30` is two's complement with 1 integer bit and 30 fraction bits, the sign "
@@ -201,13 +245,21 @@ def ports_page(config: Config, top: str) -> str:
         _table(("port", "direction", "bits", "format", "meaning"), port_rows),
         "Both streams follow the AXI4-Stream handshake: a word moves at a rising edge of `clk` at "
         "which `tvalid` and `tready` are 1. Once offered, a word must stay until it moves.",
-        f"Latency: {first} cycles from the edge that takes a span to the first edge at which its "
-        "first pixel is offered. Rate: one pixel per cycle for as long as spans are offered and "
-        "pixels are taken, also if every span is one pixel long. Back-pressure loses nothing.",
+        *_pace(config),
         f"## Spans\n\n`s_axis_tdata`, {span_bits(config)} bits:",
         _table(("field", "bits", "format", "meaning"), _span_rows(config)),
     ]
-    if config.technique == "phong":
+    if config.sums_lights:
+        out.append(
+            "Each light has a frame of its own: z points to the light, and the eye lies in the "
+            "plane of x and z. A span brings one and the same normal in the frame of every light; "
+            "it need not have length 1. x, y, length and material are read from the first record "
+            "of a span, `s_axis_tlast` from the last one. Where the last record has a place for a "
+            "light that the frame does not have, start and step are 0 there. A span is legal if "
+            f"its length is 1 or more, x + length is at most {config.max_size}, and its values "
+            "stay in their format from its first pixel to its last."
+        )
+    elif config.technique == "phong":
         out.append(
             "Normals are in the light frame: z points to the light, and the eye lies in the plane "
             "of x and z. They need not have length 1. A span is legal if its length is 1 or more, "
@@ -221,15 +273,15 @@ def ports_page(config: Config, top: str) -> str:
     ]
     if config.technique == "phong":
         material, index = config.material_bits, config.weight_index_bits
+        number = f"light ({config.light_bits} bits), " if config.light_bits else ""
         out += [
-            f"`write_address` is {{kind (1 bit), material ({material} bits), index ({index} "
-            "bits)}. Write only while no pixel is in flight: a write changes the pixels that are. "
-            "The last write must be 4 cycles old when the first span of the frame is taken.",
+            f"`write_address` is {{{number}kind (1 bit), material ({material} bits), index "
+            f"({index} bits)}}. Write only while no pixel is in flight: a write changes the "
+            "pixels that are. The last write must be 4 cycles old when the first span of the "
+            "frame is taken.",
             *_reflectance_writes(config),
             _table(("address", "word", "meaning", "in this configuration"), _write_rows(config)),
-            "W(i) is the weight of the highlight, Cp the colour of the surface, d its ambient "
-            "share, n the exponent of the highlight, all of eq. (3) of Phong 1975: "
-            "S = Cp [cos(i) (1 - d) + d] + W(i) cos(s)^n. "
+            _rule(config),
             "h = (sin(a/2), 0, cos(a/2)) for an eye at the angle a from the light.",
         ]
     else:
@@ -238,6 +290,49 @@ def ports_page(config: Config, top: str) -> str:
             "answered with `unsupported`."
         )
     return "\n\n".join(out) + "\n"
+
+
+def _pace(config: Config) -> list[str]:
+    """Latency and rate. Raises BuildError."""
+    first = first_pixel_latency(config)
+    if config.sums_lights and config.lights > 1:
+        units = f"{config.units} at a time" if config.units > 1 else "one at a time"
+        return [
+            f"This build has up to {config.lights} lights, {units}. A frame of L lights takes "
+            f"T = ceil(L / {config.units}) turns: a span is offered as T records, one word of "
+            "`s_axis_tdata` for each turn.",
+            f"Latency: {first} + T - 1 cycles from the edge that takes the first record of a span "
+            "to the first edge at which its first pixel is offered. Rate: one pixel in T cycles "
+            "for as long as records are offered and pixels are taken, also if every span is one "
+            "pixel long. Back-pressure loses nothing.",
+        ]
+    return [
+        f"Latency: {first} cycles from the edge that takes a span to the first edge at which its "
+        "first pixel is offered. Rate: one pixel per cycle for as long as spans are offered and "
+        "pixels are taken, also if every span is one pixel long. Back-pressure loses nothing.",
+    ]
+
+
+def _rule(config: Config) -> str:
+    """What a pixel's intensity is, and the words of its terms."""
+    power = "F(cos(s))" if config.has_curves else "cos(s)^n"
+    curve = ", F the material's curve" if config.has_curves else ""
+    if not config.sums_lights:
+        exponent = "" if config.has_curves else ", n the exponent of the highlight"
+        return (
+            "W(i) is the weight of the highlight, Cp the colour of the surface, d its ambient "
+            f"share{exponent}{curve}, all of eq. (3) of Phong 1975: "
+            f"S = Cp [cos(i) (1 - d) + d] + W(i) {power}."
+        )
+    highlight = "ks Ls W(i)" if config.highlight_colour else "W(i)"
+    factor = "f(r) " if config.attenuation else ""
+    fall = ", f(r) its factor at the distance r" if config.attenuation else ""
+    return (
+        f"A channel is e + ka Ia + ka La of all lights, plus {factor}[kd Ld cos(i) + {highlight} "
+        f"{power}] of each light that the surface faces. kd and ks are the material's diffuse and "
+        f"specular coefficients, Ld and Ls the light's colours{fall}{curve}. Products of a light "
+        "and a material are written as one word."
+    )
 
 
 def _reflectance_writes(config: Config) -> list[str]:
@@ -292,10 +387,13 @@ def readme(
         "gouraud": "Gouraud shading: an intensity is interpolated along each span",
         "flat": "flat shading: one intensity for each span",
     }[config.technique]
+    rate = "one pixel per cycle"
+    if config.turns > 1:
+        rate = f"one pixel in {config.turns} cycles with {config.lights} lights"
     out = [
         f"# {top}",
         f"Synthesizable Verilog-2005, exported from Phong75 {version}, configuration "
-        f"`{config.name}`. {what}. Spans go in, pixels come out, one pixel per cycle.",
+        f"`{config.name}`. {what}. Spans go in, pixels come out, {rate}.",
     ]
     if pruned:
         out.append(
@@ -323,7 +421,8 @@ def readme(
                 (
                     "`sim/`",
                     f"testbench, and its stimulus from {scene}: {numbers['WRITES']} register "
-                    f"writes, {numbers['SPANS']} spans, {numbers['PIXELS']} expected pixels",
+                    f"writes, {numbers['RECORDS']} words of spans, {numbers['PIXELS']} expected "
+                    "pixels",
                 ),
                 ("`export.json`", "version, configuration and files of this export"),
             ],

@@ -9,11 +9,13 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from phong75.model import twin
 from phong75.model.config import Config
 from phong75.model.frame import Frame
 from phong75.model.registers import address_bits, word_bits, writes
-from phong75.model.spans import pack, record_bits, span_fields
+from phong75.model.spans import pack_frame, record_bits, span_fields, turns
 from phong75.sim import design
 from phong75.sim.latency import latencies
 
@@ -48,10 +50,11 @@ def thin(frame: Frame, most: int = MOST_PIXELS) -> Frame:
     stride = -(-int(frame.spans["length"].sum()) // most)
     if stride <= 1:
         return frame
-    spans = frame.spans[::stride].copy()
+    thinned = frame.take(np.arange(0, len(frame.spans), stride))
+    spans = thinned.spans.copy()
     spans["last"] = False
     spans["last"][-1:] = True
-    return dataclasses.replace(frame, spans=spans)
+    return dataclasses.replace(thinned, spans=spans)
 
 
 def _hex(words: list[int], bits: int, layout: str) -> str:
@@ -73,7 +76,7 @@ def pixel_bits(config: Config) -> int:
 def stimulus(frame: Frame, config: Config) -> Stimulus:
     """The stimulus of `frame`, a legal one with a span at least. Raises BuildError."""
     size = record_bits(config) // 8
-    body = pack(frame.spans, config, frame.half_vector)
+    body = pack_frame(frame, config)
     records = [int.from_bytes(body[k : k + size], "big") for k in range(0, len(body), size)]
     to_write = writes(frame, config)
     place = [(address << word_bits(config)) | word for address, word in to_write]
@@ -93,15 +96,16 @@ def stimulus(frame: Frame, config: Config) -> Stimulus:
         "WORD_BITS": word_bits(config),
         "COORDINATE_BITS": coordinate,
         "COLOUR_BITS": colour,
-        "LATENCY": first_pixel_latency(config),
-        "SPANS": len(records),
+        "TURNS": turns(frame, config),
+        "LATENCY": first_pixel_latency(config) + turns(frame, config) - 1,
+        "RECORDS": len(records),
         "WRITES": len(to_write),
         "PIXELS": len(codes),
         "ZERO_NORMALS": twin.zero_normals(frame, config),
     }
     write_bits = address_bits(config) + word_bits(config)
     return Stimulus(
-        _hex(records, span_bits(config) + 1, "{last, s_axis_tdata} of each span"),
+        _hex(records, span_bits(config) + 1, "{last, s_axis_tdata} of each record"),
         # A memory has one word at least.
         _hex(place or [0], write_bits, "{write_address, write_word} of each write"),
         _hex(codes, pixel_bits(config) + 1, "{last, m_axis_tdata} of each pixel"),
@@ -110,9 +114,8 @@ def stimulus(frame: Frame, config: Config) -> Stimulus:
 
 
 def first_pixel_latency(config: Config) -> int:
-    """Cycles from the edge that takes a span to the first edge at which its first pixel is offered.
-
-    Raises BuildError.
+    """Cycles from the edge that takes a span to the first edge at which its first pixel is offered,
+    where a pixel takes one turn; each further turn adds a cycle. Raises BuildError.
     """
     return latencies(config)["pixel"] + WALKER_AND_FIFO
 

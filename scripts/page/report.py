@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """One page of all results, build/report/index.html: `phong75 report`.
 
-The page shows pictures, shadings side by side, cycles, error over run time, stability, the error
-budget and the records of the long runs, from the JSON and CSV files of the other targets. Scenes
-without a current result are run first. The page is one file that needs no network: pictures are
-WebP, all but one without loss, and plotly.js is packed with gzip. Together that is less than
-LIMIT_BYTES. A part whose data is missing names the command that makes it. Exit code: 0; 2 if the
-page could not be made.
+The page shows pictures, shadings side by side, techniques, cycles, error over run time, stability,
+the error budget and the records of the long runs, from the JSON and CSV files of the other targets.
+Scenes without a current result are run first. The page is one file that needs no network: pictures
+are WebP, those of the scenes without loss, and plotly.js is packed with gzip. Together that is less
+than LIMIT_BYTES. A part whose data is missing names the command that makes it. Exit code: 0; 2 if
+the page could not be made.
 """
 
 from __future__ import annotations
@@ -42,8 +42,14 @@ from phong75.model.studies.charts import TECHNIQUE_NAMES
 from phong75.scripts import compare, console, recorded
 from phong75.scripts import run as run_scene
 from phong75.scripts.console import Steps
-from phong75.scripts.docs.tables import HardwareRow, comparison_rows, hardware_rows
+from phong75.scripts.docs.tables import (
+    TECHNIQUE_WORDS,
+    HardwareRow,
+    comparison_rows,
+    hardware_rows,
+)
 from phong75.scripts.scene_results import SCHEMA as RESULTS
+from phong75.scripts.scene_results import picture_path
 from phong75.scripts.stability import SCHEMA as STABILITY
 from phong75.scripts.studies import artifact_runs
 from phong75.sim.design import BUILD, PACKAGE
@@ -51,6 +57,9 @@ from phong75.sim.frame import run_frame
 
 #: The page weighs less than this.
 LIMIT_BYTES = 5_000_000
+
+#: Colours of the error maps, which are noise: fewer colours, fewer bytes.
+MAP_COLOURS = 64
 
 #: Markers of the curves, one a method.
 SHAPES = ("circle", "square", "diamond", "triangle-up", "x", "cross", "star", "pentagon")
@@ -132,12 +141,16 @@ def size_text(size) -> str:
     return "{} × {}".format(*size)
 
 
-def data_uri(path: Path, lossless: bool = True) -> str:
-    """The picture in `path` as a data URI: WebP, `lossless` or smaller. Raises OSError."""
+def data_uri(path: Path, lossless: bool = True, colours: int = 0) -> str:
+    """The picture in `path` as a data URI: WebP, `lossless` or smaller, with at most `colours`
+    colours unless that is 0. Raises OSError."""
     packed = BytesIO()
     how = {"lossless": True, "quality": 75, "method": 4} if lossless else {"quality": 80}
     with Image.open(path) as picture:
-        picture.convert("RGB").save(packed, "WEBP", **how)
+        shown = picture.convert("RGB")
+        if colours:
+            shown = shown.quantize(colours, dither=Image.Dither.NONE).convert("RGB")
+        shown.save(packed, "WEBP", **how)
     return "data:image/webp;base64," + base64.b64encode(packed.getvalue()).decode()
 
 
@@ -255,6 +268,41 @@ def comparison(build: Path) -> Comparison | None:
     )  # fmt: skip
 
 
+@dataclass
+class Technique:
+    """What the page shows of a run of a technique's scene.
+
+    row: its row of build/results.json. what, source: what the scene shows, and who described the
+    technique. picture: a data URI, or "" if there is none.
+    """
+
+    row: dict
+    what: str
+    source: str
+    picture: str
+
+    @property
+    def title(self) -> str:
+        """The scene, with the technique where an older one shows it."""
+        older = self.row["technique"] != C.technique
+        return self.row["scene"] + (f", {title(self.row['technique'])}" if older else "")
+
+    @property
+    def good(self) -> bool:
+        """Whether no pixel differs, and the error is within its bound."""
+        return not self.row["mismatches"] and self.row["max_lsb"] <= self.row["bound_lsb"]
+
+
+def techniques(results: dict | None, build: Path) -> list[Technique]:
+    """The runs of the technique scenes that `make scenes` left in `build`."""
+    shown = []
+    for row in results["techniques"] if results else []:
+        path = picture_path(build, row["scene"], row["technique"])
+        picture = data_uri(path, lossless=False) if path.is_file() else ""
+        shown.append(Technique(row, *TECHNIQUE_WORDS[row["scene"]], picture))
+    return shown
+
+
 def scene_result(name: str, build: Path) -> SceneResult | None:
     """What the runs of `name` left below `build`; None if it was not run."""
     result = folder(build, name, C.technique)
@@ -272,7 +320,8 @@ def scene_result(name: str, build: Path) -> SceneResult | None:
     budget = [error_budget.rows(material, frame, C) for material in used]
     worst = max(budget, key=lambda rows: rows[-1].bound, default=[])
     return SceneResult(
-        name, report, views, data_uri(result / "error.png"), failures(report), worst,
+        name, report, views, data_uri(result / "error.png", colours=MAP_COLOURS),
+        failures(report), worst,
         {row.feature: row for row in prune(frame)[1]},
     )  # fmt: skip
 
@@ -638,7 +687,8 @@ def page(build: Path = BUILD) -> str:
     )  # fmt: skip
     environment.filters["code"] = code
     return environment.get_template("report.html.j2").render(
-        scenes=scenes, comparison=comparison(build), results=results, stability=stability,
+        scenes=scenes, comparison=comparison(build), techniques=techniques(results, build),
+        results=results, stability=stability,
         precision=precision,
         clock_note=clock_note(precision) if precision else "",
         precision_frames=precision_frames() if precision else [],

@@ -110,11 +110,21 @@ async def locate_stage(dut):
     (folder / "result.json").write_text(json.dumps(message))
 
 
+def locatable(config: Config) -> bool:
+    """Whether `locate` knows the modules of `config`: a technique, with normals of either order; or
+    a sum over lights without tables of reflectance."""
+    if config.sums_lights:
+        return not (config.has_curves or config.weight_jumps)
+    same = replace(config, name=config.technique, normal_order=1)
+    return same == replace(TECHNIQUES[config.technique], name=config.technique)
+
+
 def locate(frame: Frame, pixel: int, config: Config = DEFAULT, rtl: Path | None = None) -> str:
     """One line that names the first stage at which the RTL differs from the twin.
 
-    pixel: number of the wrong pixel in the stream of `frame`. rtl: folder of the design, None for
-    the project's own. Builds the testbenches of the modules if necessary. Raises BuildError.
+    pixel: number of the wrong pixel in the stream of `frame`. config: see `locatable`. rtl: folder
+    of the design, None for the project's own. Builds the testbenches of the modules if necessary.
+    Raises BuildError.
     """
     (BUILD / "run").mkdir(parents=True, exist_ok=True)
     folder = Path(tempfile.mkdtemp(dir=BUILD / "run"))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // testbench: plain Verilog testbench of phong_pipeline. It writes the registers, streams a frame of
-// spans and compares every pixel with the expected one, three times:
+// spans, of TURNS records each, and compares every pixel with the expected one, three times:
 //   1. without pauses: latency and rate are checked, too;
 //   2. with random pauses of both streams;
 //   3. with other pauses, after a run that a reset breaks off.
@@ -10,7 +10,7 @@
 `default_nettype none
 
 module testbench #(
-    parameter SPANS_FILE  = "sim/spans.hex",   // {last, span}
+    parameter SPANS_FILE  = "sim/spans.hex",   // {last, record}
     parameter WRITES_FILE = "sim/writes.hex",  // {address, word}
     parameter PIXELS_FILE = "sim/pixels.hex",  // {last, pixel}
     parameter FINISH      = 1                  // 0: the parent reads done and failed
@@ -21,8 +21,9 @@ module testbench #(
   localparam WORD_BITS       = 35;
   localparam COORDINATE_BITS = 12;
   localparam COLOUR_BITS     = 8;
+  localparam TURNS           = 1;  // records of a span, and cycles of a pixel
   localparam LATENCY         = 77;  // cycles from the first span taken to the first pixel offered
-  localparam SPANS           = 635;  // spans in the frame
+  localparam RECORDS         = 635;  // records of all spans of the frame
   localparam WRITES          = 276;
   localparam PIXELS          = 872;
   localparam ZERO_NORMALS    = 0;  // pixels that the pipeline reports as zero vectors
@@ -33,7 +34,7 @@ module testbench #(
   localparam LAST_WRITE = WRITES > 0 ? WRITES - 1 : 0;  // the file has one word at least
 
   // ---- stimulus and expected pixels ----
-  reg [SPAN_BITS:0] spans[0:SPANS-1];
+  reg [SPAN_BITS:0] spans[0:RECORDS-1];
   reg [ADDRESS_BITS+WORD_BITS-1:0] writes[0:LAST_WRITE];
   reg [PIXEL_BITS:0] pixels[0:PIXELS-1];
 
@@ -78,7 +79,7 @@ module testbench #(
   reg [7:0] stall;     // of 256: a cycle in which no pixel is taken
   reg done, failed;
 
-  integer next_span;   // number of the next span to be offered
+  integer next_span;   // number of the next record to be offered
   integer next_pixel;  // number of the next pixel to come
   integer cycles;      // cycles since the first span was taken
   integer first_at;    // value of `cycles` at the first pixel offered
@@ -130,8 +131,8 @@ module testbench #(
     end else begin
       // Spans in: once offered, a span stays until it is taken.
       if (~span_valid | span_ready) begin
-        span_valid <= next_span < SPANS && random[15:8] >= idle;
-        if (next_span < SPANS && random[15:8] >= idle) begin
+        span_valid <= next_span < RECORDS && random[15:8] >= idle;
+        if (next_span < RECORDS && random[15:8] >= idle) begin
           {span_last, span} <= spans[next_span];
           next_span <= next_span + 1;
         end
@@ -229,9 +230,9 @@ module testbench #(
         if (first_at != LATENCY) begin
           $display("FAIL the first pixel came after %0d cycles, expected %0d", first_at, LATENCY);
           fail;
-        end else if (last_at != LATENCY + PIXELS - 1) begin
+        end else if (last_at != LATENCY + TURNS * (PIXELS - 1)) begin
           $display("FAIL %0d pixels took %0d cycles, expected %0d", PIXELS, last_at,
-                   LATENCY + PIXELS - 1);
+                   LATENCY + TURNS * (PIXELS - 1));
           fail;
         end
       end
@@ -248,7 +249,7 @@ module testbench #(
       comparing = 1'b0;
       idle = 8'd0;
       stall = 8'd200;
-      repeat (LATENCY + 150) @(negedge clk);
+      repeat (LATENCY + 150 * TURNS) @(negedge clk);
       running = 1'b0;
       pulse_reset(1);
     end

@@ -17,10 +17,10 @@ from PIL import Image
 from phong75.model import twin
 from phong75.model.analysis.pictures import canvas, write_picture
 from phong75.model.config import TECHNIQUES
-from phong75.model.frame import InputError
+from phong75.model.frame import InputError, fitted
 from phong75.model.front.scene import bundled_scenes, load_scene
 from phong75.model.scene_to_frame import front_end
-from phong75.scripts import console, recorded
+from phong75.scripts import console, recorded, scene_results
 from phong75.scripts import run as run_scene
 from phong75.scripts.console import Steps
 from phong75.scripts.page import report
@@ -30,8 +30,8 @@ from phong75.sim.frame.run_frame import SimResult
 RED, BLUE = (200, 30, 20), (20, 40, 200)
 SCENES = ("pyramid", "sphere")
 SECTIONS = (
-    "scenes", "shadings", "cycles", "features", "precision", "tessellation", "arguments",
-    "stability", "budget", "hardware",
+    "scenes", "shadings", "techniques", "cycles", "features", "precision", "tessellation",
+    "arguments", "stability", "budget", "hardware",
 )  # fmt: skip
 browser = pytest.mark.browser
 
@@ -50,6 +50,16 @@ def point(method, label, cycles, rms, **more):
 PRECISION = [
     point("tables", "8 lines", 1000, 2.0), point("tables", "64 lines", 1000, 0.4),
     point("Newton", "1 step", 1300, 0.3), point("Newton", "2 steps", 1900, 0.29),
+]  # fmt: skip
+
+
+#: A technique that went well and one that did not, neither with a picture.
+TECHNIQUES_RUN = [
+    {"scene": scene, "technique": technique, "configuration": "default_lights_8", "lights": 8,
+     "multipliers": 22, "size": "640×480", "pixels": 4000, "spans": 500, "cycles": 32_100,
+     "fps": 6230.0, "stalled_cycles": 40_000, "mismatches": wrong, "max_lsb": 0.5111,
+     "bound_lsb": 0.5222, "correctly_rounded": 0.999, "undecided": 0}
+    for scene, technique, wrong in (("coloured_lights", "phong", 0), ("lamps", "gouraud", 3))
 ]  # fmt: skip
 
 
@@ -104,7 +114,8 @@ def build(tmp_path_factory):
     row = {"scene": "sphere", "size": "160×120", "pixels": 9000, "spans": 500, "cycles": 9075,
            "fps": 22000.0, "mismatches": 0, "max_lsb": 0.5, "bound_lsb": 0.55}  # fmt: skip
     (build / "results.json").write_text(json.dumps(
-        {"schema": 1, "fps": 30, "clock_hz": 200e6, "cycles_available": 6_666_666, "rows": [row]}
+        {"schema": 2, "fps": 30, "clock_hz": 200e6, "cycles_available": 6_666_666, "rows": [row],
+         "techniques": TECHNIQUES_RUN}
     ))  # fmt: skip
     case = {"case": "a case", "extreme": "much", "expected": "well", "pixels": 5, "max_lsb": 0.5,
             "bound_lsb": 0.6, "mismatches": 0, "zero_normals": 1, "failures": [],
@@ -141,6 +152,21 @@ def test_the_numbers_are_those_of_the_runs(html, build):
     assert "0.25, 0" in html and "200 to 236" in html
     assert "1.83, 2.00, 1.99" in html and "the frame is one-sided" in html
     assert "&lt;b&gt;bad&lt;/b&gt;" in html and "<b>bad</b>" not in html
+
+
+def test_techniques_show_their_figures_and_pictures(html, build):
+    part = html.partition('<section id="techniques"')[2].partition("</section>")[0]
+    good, bad = part.split("<article")[1:]
+    assert "coloured_lights" in good and 'verdict good">ok' in good and "eight coloured" in good
+    assert "0.5111 LSB, bound 0.5222" in good and "32 100, 8.025 per pixel" in good
+    assert "default_lights_8" in good and "0 of 2 × 4 000" in good
+    assert "lamps, Gouraud" in bad and 'verdict bad">failed' in bad and "<img" not in good + bad
+    path = scene_results.picture_path(build, "lamps", "gouraud")
+    path.parent.mkdir()
+    shutil.copy(build / "sphere" / "frame.png", path)
+    shown = report.techniques(report.load(build / "results.json"), build)
+    assert [bool(t.picture) for t in shown] == [False, True]
+    shutil.rmtree(path.parent)
 
 
 def test_what_is_missing_names_its_command(tmp_path, monkeypatch):
@@ -211,11 +237,22 @@ def test_the_page_of_all_scenes_weighs_less_than_5_mb(build, tmp_path):
                 tmp_path / f"{name}-{technique}" / "frame.png",
                 canvas(frame, pixels.x, pixels.y, pixels.rgb),
             )
+    runs = []
+    (tmp_path / "techniques").mkdir()
+    for scene, technique in scene_results.technique_runs():
+        config = TECHNIQUES[technique]
+        frame = front_end(load_scene(scene, None, config), config).frame
+        pixels = twin.render(frame, fitted(config, frame))
+        path = scene_results.picture_path(tmp_path, scene, technique)
+        write_picture(path, canvas(frame, pixels.x, pixels.y, pixels.rgb))
+        runs.append(TECHNIQUES_RUN[0] | {"scene": scene, "technique": technique})
+    results = json.loads((tmp_path / "results.json").read_text()) | {"techniques": runs}
+    (tmp_path / "results.json").write_text(json.dumps(results))
     noise = np.random.default_rng(75).integers(0, 256, (300, 300, 3), np.uint8)  # 270 kB
     for name in ("mach", "flicker", "orientation"):
         write_picture(tmp_path / "sweep" / f"{name}.png", noise)
     text = report.page(tmp_path)
-    assert text.count("data:image/webp") == 5 * len(bundled_scenes()) + 3 + 1
+    assert text.count("data:image/webp") == 5 * len(bundled_scenes()) + len(runs) + 3 + 1
     assert len(text.encode()) < report.LIMIT_BYTES == 5_000_000
 
 
@@ -592,7 +629,7 @@ def test_nothing_is_without_a_name(visit, html):
 def test_a_page_without_any_result(visit, tmp_path, monkeypatch):
     monkeypatch.setattr(recorded, "FOLDER", tmp_path)
     page = visit(report.page(tmp_path))
-    assert page.locator(".missing:visible").count() == 10
+    assert page.locator(".missing:visible").count() == 11
 
 
 def test_every_bundled_scene_has_a_place(monkeypatch, tmp_path):
