@@ -580,6 +580,7 @@ FORWARDED = {
     "tessellation": ("", "RECORD"),
     "stability": ("", "RECORD"),
     "adversarial": ("", "KEEP RECORD"),
+    "prove": ("CONFIG", "AGAIN RECORD"),
     "report": ("", ""),
     "synth": ("CONFIG SCENE GRADE SEEDS", "GATES RECORD"),
     "netlist": ("", "RECORD"),

@@ -33,6 +33,19 @@ def _clocks() -> dict[str, dict[str, Any]]:
     return _record("clocks")["configurations"]
 
 
+def _certified(limit: int, steep: bool) -> float:
+    """The certified bound in LSB for n up to `limit`; steep: for any W(i), not for a constant W."""
+    rows = _record("prove")["families"]
+    return next(
+        row["certified_lsb"] for row in rows if (row["limit"], row["steep"]) == (limit, steep)
+    )
+
+
+def _certified_ratio() -> float:
+    """The largest ratio of a certified bound to the worst input found."""
+    return max(row["certified_lsb"] / row["reached_lsb"] for row in _record("prove")["families"])
+
+
 def _power_error(n: float) -> float:
     return next(row["max_error"] for row in _record("stability")["powers"] if row["n"] == n)
 
@@ -161,6 +174,8 @@ TABLES: dict[str, Callable[[], str]] = {
     "surfaces": lambda: tables.surfaces(_record("tessellation")),
     "quadratic-normals": lambda: tables.quadratic_normals(_record("tessellation")),
     "error-families": lambda: tables.error_families(_record("stability")["errors"]),
+    "method-cases": lambda: tables.method_cases(_record("stability")["methods"]),
+    "certified": lambda: tables.certified(_record("prove")["families"]),
     "cases": lambda: tables.cases(_record("stability")["rows"], facts.case_words()),
     "powers": lambda: tables.powers(_record("stability")["powers"]),
     "pruning": lambda: tables.pruning(_record("prune")["builds"]),
@@ -180,10 +195,13 @@ FIGURES: dict[str, Callable[[], str]] = {
     "latency.first-pixel": lambda: str(facts.latency("first_pixel")),
     "latency.first-pixel-gouraud": lambda: str(facts.latency("first_pixel", TECHNIQUES["gouraud"])),
     "multipliers": lambda: str(facts.modules()["multiplier"]),
-    "bound.n32": lambda: facts.above(facts.bound(32)),
-    "bound.n128": lambda: facts.above(facts.bound(128)),
-    "bound.intensity": lambda: facts.above(facts.intensity_bound(), 4),
-    "bound.jump": lambda: facts.above(facts.jump()),
+    "bound.n32": lambda: tables.above(_certified(32, steep=True)),
+    "bound.n128": lambda: tables.above(_certified(128, steep=True)),
+    "bound.constant-n32": lambda: tables.above(_certified(32, steep=False)),
+    "bound.constant-n128": lambda: tables.above(_certified(128, steep=False)),
+    "prove.pairs": lambda: f"{sum(row['pairs'] for row in _record('prove')['power']) / 1e9:.0f}",
+    "bound.ratio": lambda: tables.above(_certified_ratio(), 3),
+    "bound.intensity": lambda: tables.above(facts.intensity_bound(), 4),
     "configurations": lambda: str(len(CONFIGS)),
     "mesh.memory": facts.mesh_memory,
     "mesh.time": facts.mesh_time,

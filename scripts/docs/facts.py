@@ -10,7 +10,6 @@ from __future__ import annotations
 import dataclasses
 import functools
 import inspect
-import math
 import re
 from pathlib import Path
 
@@ -198,27 +197,9 @@ def _frame(angle: float, n: float, weight=1.0) -> Frame:
     return Frame(1, 1, half_vector_codes(eye, C), False, (0, 0, 0), table, np.zeros(1, SPAN_DTYPE))
 
 
-@functools.cache
-def bound(n: float) -> float:
-    """The derived bound in LSB for exponents up to `n` and W constant, over all angles."""
-    return max(error_budget.bound_lsb(_frame(a, n)) for a in np.linspace(0, np.pi, 33))
-
-
-@functools.cache
-def jump(n: float = 32) -> float:
-    """What a jump of W from 0 to 1 adds to the bound, LSB."""
-    weight = np.where(np.arange(C.weight_points) < C.weight_points // 2, 0.0, 1.0)
-    return error_budget.bound_lsb(_frame(0.5, n, weight)) - bound(n)
-
-
 def intensity_bound() -> float:
     """The bound in LSB of Gouraud and flat shading against the interpolated intensity."""
     return error_budget.bound_lsb(_frame(0.5, 1), TECHNIQUES["gouraud"])
-
-
-def above(value: float, digits: int = 2) -> str:
-    """`value` rounded up: a bound stays one."""
-    return f"{math.ceil(value * 10**digits) / 10**digits:.{digits}f}"
 
 
 def budget() -> str:
