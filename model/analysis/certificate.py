@@ -8,7 +8,8 @@ the direction of the normal and the exponent n, all in intervals; and the coeffi
 corners are enough.
 
 What is covered
-    Builds for one white light with the normal method `normalize` and powers by tables. Every normal
+    Builds for one white light with the normal method `normalize` or `dot_first`, any method of
+    1/sqrt, and powers by tables. Every normal
     but the zero vector, of any length, one- or two-sided. Every half vector that the span file
     accepts: its length differs from 1 by at most sqrt(5)/2 of its LSB. n from 1 to 128.
     Cp d + Cp (1 - d) at most 1; W at each of its points from 0 to 1. An unlit pixel is exact.
@@ -32,6 +33,9 @@ How an error arises. All equations are exact; bounds are rounded outward by Arb.
     z = cos(i) has the error dz = e z + (1 + e) T_z + R'.
     w = (cos f y, t) has the error dw = a w + (1 + a) (cos f T_y, cos f T_x - sin f T_z)
     + (1 + eta) (cos f R_y, cos f R_x - sin f R_z) + R'', a = (1 + e)(1 + eta) - 1.
+    With `dot_first` the products with h come before the scale: in place of the terms of R there are
+    (1 + e) R_c, |R_c| at most 2 k c1 max|d_j| by component, since a product of mantissas is rounded
+    to one bit less.
     v = 2 |w|**2 has the error dv = 4 w.dw + 2 |dw|**2 + R''', clamped below 1.
     q = (1 - v)**n has the error dq = E - D dv, D the slope n (1 - v')**(n - 1) between v and
     v + dv.
@@ -75,9 +79,9 @@ RIGHT_ANGLE = math.nextafter(math.pi / 2, 2)
 
 #: Fields of `Config` that the derivation holds for, with their values.
 COVERED = {
-    "technique": "phong", "normal_method": "normalize", "power_method": "tables",
-    "normal_order": 1, "constant_shift": (), "sums_lights": False, "weight_jumps": 0,
-    "power_function": True,
+    "technique": ("phong",), "normal_method": ("normalize", "dot_first"),
+    "power_method": ("tables",), "normal_order": (1,), "constant_shift": ((),),
+    "sums_lights": (False,), "weight_jumps": (0,), "power_function": (True,),
 }  # fmt: skip
 
 
@@ -87,8 +91,8 @@ class NoBoundError(Exception):
 
 def check(config: Config) -> None:
     """Raise ValueError if the derivation does not hold for `config`."""
-    for name, value in COVERED.items():
-        if getattr(config, name) != value:
+    for name, values in COVERED.items():
+        if getattr(config, name) not in values:
             raise ValueError(f"nothing is certified for {name} `{getattr(config, name)}`")
 
 
@@ -203,10 +207,13 @@ class ErrorBound:
         self._eta = arb(5).sqrt() * half * config.half_vector.lsb
         self._a = (1 + e) * (1 + self._eta) - 1
         self._versine = arb(config.versine.lsb)
-        # |dw| - a |w|, whatever the input: |R| with any component clamped, and R''.
+        self._dot_first = config.normal_method == "dot_first"
+        # |dw| - a |w|, whatever the input: |R| with any component clamped or |R_c|, and R''.
+        products = 2 * arb(2).sqrt() * (1 + e) * self._k * stretch
+        components = (1 + self._eta) * arb(3).sqrt() * self._unit_clamped
         self._dw = (
             (1 + self._a) * self._turn
-            + (1 + self._eta) * arb(3).sqrt() * self._unit_clamped
+            + (products if self._dot_first else components)
             + arb(2).sqrt() * config.unit.lsb
         )
 
@@ -248,14 +255,16 @@ class ErrorBound:
         r_cross = [rounding(w, self._unit, 2 * self._unit) for w in (cross_x, cross_y)]
         saturated = v.upper() + dv > 1 - self._versine  # v may be clamped below 1
         # dv without e and T: what D |w| multiplies, and what D does.
-        own = 4 * (
-            size * self._eta
-            + (1 + self._eta) * (to_x * cosine * r_y + to_y * (cosine * r_x + sine * r_z))
-            + to_x * r_cross[0] + to_y * r_cross[1]
-        )  # fmt: skip
+        k = self._k * largest * self._stretch
+        if self._dot_first:
+            normal = (1 + _most(self._e)) * 2 * k * (to_x + to_y)
+        else:
+            normal = (1 + self._eta) * (
+                to_x * cosine * r_y + to_y * (cosine * r_x + sine * r_z)
+            )  # fmt: skip
+        own = 4 * (size * self._eta + normal + to_x * r_cross[0] + to_y * r_cross[1])
         fixed = (self._versine if saturated else self._versine / 2) + self._second(longest)
         specular = steepness * own + slope * fixed
-        k = self._k * largest * self._stretch
         outward = 4 * steepness  # how the error grows with dw along w, per W
 
         worst = arb(0)
