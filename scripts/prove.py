@@ -26,6 +26,7 @@ from phong75.model.frame import InputError
 from phong75.model.studies import adversarial
 from phong75.scripts import console, recorded
 from phong75.scripts.console import Steps
+from phong75.scripts.docs.tables import above
 from phong75.sim import build, power_errors
 from phong75.sim.design import BUILD
 from phong75.sim.power_errors import PowerRow
@@ -118,8 +119,8 @@ def table(rows: list[dict]) -> Table:
     for row in rows:
         certified, reached = row["certified_lsb"], row["reached_lsb"]
         out.add_row(
-            row["family"], f"{reached:.4f}", "≤", f"{certified:.4f}" if certified else "–",
-            f"{certified / reached:.3f}" if certified else "–", f"{row['boxes']}",
+            row["family"], f"{reached:.4f}", "≤", above(certified, 4) if certified else "–",
+            above(certified / reached, 3) if certified else "–", f"{row['boxes']}",
         )  # fmt: skip
     return out
 

@@ -100,6 +100,9 @@ def test_bounds_are_rounded_up():
         )  # fmt: skip
         assert bound <= float(FIGURES[f"bound.n{n}"]()) <= bound + 0.01
     assert tables.above(0.501) == "0.51" and tables.above(0.5) == "0.50"
+    assert (
+        tables.above_digits(1.841e-5, 2) == "1.9e-05" and tables.above_digits(0.542, 3) == "0.542"
+    )
 
 
 def test_the_multipliers_are_counted():

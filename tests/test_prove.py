@@ -24,6 +24,7 @@ from phong75.model.studies.methods import CONFIGS
 from phong75.model.twin.core.specular_power import specular_power
 from phong75.scripts import prove, recorded
 from phong75.scripts.configurations import CONFIGURATIONS
+from phong75.scripts.docs.tables import above
 from phong75.sim import power_errors
 from phong75.sim.power_errors import PowerRow
 
@@ -294,7 +295,7 @@ def test_a_bound_too_far_above_what_is_found_fails(monkeypatch, capsys):
     monkeypatch.setattr(prove, "families", lambda *_: rows)
     assert prove.main(C, False, False) == 0
     out = capsys.readouterr().out
-    assert all(f"{row['certified_lsb']:.4f}" in out for row in rows)
+    assert all(above(row["certified_lsb"], 4) in out for row in rows)
     rows[1]["certified_lsb"], rows[2]["certified_lsb"] = 1.06 * rows[1]["reached_lsb"], None
     assert prove.main(C, False, False) == 1
     lines = [line for line in capsys.readouterr().err.splitlines() if "FAILED" in line]

@@ -115,7 +115,7 @@ def summary() -> str:
          f"{len(runs) // len(scenes['scenes'])} sizes)", "[results](docs/results.md)"),
         ("largest error against float64 at the same ports, and its derived bound",
          f"{tables.worst_scene(scenes, 'max_lsb'):.3f} LSB, "
-         f"{tables.worst_scene(scenes, 'bound_lsb'):.3f} LSB (perfect rounding: 0.5)",
+         f"{tables.above(tables.worst_scene(scenes, 'bound_lsb'), 3)} LSB (perfect rounding: 0.5)",
          "[error budget](docs/architecture.md#error-budget)"),
         ("throughput, latency",
          f"one pixel per cycle, {facts.latency('first_pixel')} cycles from a span to its first "

@@ -27,7 +27,7 @@ from phong75.model.front.scene import SHAPES
 from phong75.model.reflectance import Power, curve_distance, curve_words
 from phong75.model.studies import corner_cases, light_places
 from phong75.model.studies.methods import points
-from phong75.scripts.docs.tables import markdown
+from phong75.scripts.docs.tables import above_digits, markdown
 from phong75.scripts.export import documents
 from phong75.sim.elaborate import instances
 from phong75.sim.formal.proofs import PROOFS
@@ -205,7 +205,7 @@ def intensity_bound() -> float:
 def budget() -> str:
     """The error budget of a white material with n = 10 and W = 1, stage by stage."""
     rows = error_budget.rows(0, _frame(1.0, 10.0))
-    cells = ((row.stage, f"{row.bound:.3g}", row.why.replace("|", "\\|")) for row in rows)
+    cells = ((row.stage, above_digits(row.bound, 3), row.why.replace("|", "\\|")) for row in rows)
     return markdown(("stage", "bound", "why"), ((a, b, c) for a, b, c in cells), left=3)
 
 

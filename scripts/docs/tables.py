@@ -36,6 +36,12 @@ def above(value: float, digits: int = 2) -> str:
     return f"{math.ceil(value * 10**digits) / 10**digits:.{digits}f}"
 
 
+def above_digits(value: float, digits: int) -> str:
+    """A positive `value` rounded up to `digits` significant digits."""
+    step = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
+    return f"{math.ceil(value / step) * step:.{digits}g}"
+
+
 def grouped(value: int) -> str:
     """A whole number with thin groups of three digits: 1 234 567."""
     return f"{value:,}".replace(",", "\u202f")
@@ -60,7 +66,7 @@ def scenes(record: dict[str, Any]) -> str:
             name, str(large["pixels"]), str(large["spans"]),
             str(sum(run["mismatches"] for run in runs)),
             number(max(run["max_lsb"] for run in runs), 3),
-            number(max(run["bound_lsb"] for run in runs), 3),
+            above(max(run["bound_lsb"] for run in runs), 3),
             f"{100 * min(run['correctly_rounded'] for run in runs):.2f} %",
             number(large["cycles"] / large["pixels"], 4),
             ", ".join(number(record["clock_hz"] / run["cycles"]) for run in runs),
@@ -384,7 +390,7 @@ def sweep(configurations: dict[str, dict[str, Any]]) -> str:
             number(of.get(key)), str(of["latency_cycles"]),
             f"{number(of['clock_mhz'])}{stated}", number(of["frame_us"]),
             number(of["rms_lsb"], 3), number(of["max_lsb"], 2),
-            "none derived" if of["bound_lsb"] is None else number(of["bound_lsb"], 2),
+            "none derived" if of["bound_lsb"] is None else above(of["bound_lsb"], 2),
             f"{100 * of['correctly_rounded']:.2f} %",
         ))  # fmt: skip
     header = (
@@ -572,7 +578,8 @@ def cases(rows: Iterable[dict[str, Any]], words: dict[str, tuple[str, str]]) -> 
     cells = (
         (row["case"], *words.get(row["case"], ("", "")),
          DASH if row["pixels"] is None else grouped(row["pixels"]),
-         number(row["max_lsb"], 3), number(row["bound_lsb"], 3),
+         number(row["max_lsb"], 3),
+         DASH if row["bound_lsb"] is None else above(row["bound_lsb"], 3),
          DASH if row["mismatches"] is None else str(row["mismatches"]), row["verdict"])
         for row in rows
     )  # fmt: skip
@@ -602,7 +609,9 @@ def method_cases(rows: Iterable[dict[str, Any]]) -> str:
 
 def powers(rows: Iterable[dict[str, Any]]) -> str:
     """The error of cos(s)^n alone."""
-    cells = ((f"{row['n']:g}", f"{row['max_error']:.2g}", f"{row['bound']:.2g}") for row in rows)
+    cells = (
+        (f"{row['n']:g}", f"{row['max_error']:.2g}", above_digits(row["bound"], 2)) for row in rows
+    )
     return markdown(("n", "largest error", "derived bound"), cells, left=0)
 
 
