@@ -291,6 +291,10 @@ def prove(
         bool,
         typer.Option("--again", help="Exhaust cos(s)^n, too, though its errors are recorded."),
     ] = False,
+    methods: Annotated[
+        bool,
+        typer.Option("--methods", help="Certify the other methods with the powers of the default."),
+    ] = False,
     record: options.Record = False,
 ) -> int:
     """Certify the largest error of a colour, over all inputs.
@@ -301,6 +305,8 @@ def prove(
     """
     from phong75.scripts import prove as engine
 
+    if methods:
+        return engine.methods(record)
     return engine.main(options.configuration(None, config), again, record)
 
 

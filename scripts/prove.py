@@ -21,9 +21,10 @@ from rich.table import Table
 from phong75.model.analysis import certificate, exhausted
 from phong75.model.analysis.certificate import ErrorBound
 from phong75.model.analysis.exhausted import Stages
-from phong75.model.config import Config
+from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import InputError
 from phong75.model.studies import adversarial
+from phong75.model.studies.methods import CONFIGS
 from phong75.scripts import console, recorded
 from phong75.scripts.console import Steps
 from phong75.scripts.docs.tables import above
@@ -36,6 +37,15 @@ RATIO = 1.05
 
 #: How far a certified bound may be above the bound of a single input, LSB.
 GAP = 0.003
+
+#: The methods beside the default that are certified: those with its words and its powers.
+METHODS = (
+    "dot_first_18", "table_2048", "lines_32", "parabolas_8", "table_128_newton", "fast_inverse_1",
+    "fast_inverse_2",
+)  # fmt: skip
+
+#: The same as GAP, for the methods.
+METHOD_GAP = 0.01
 
 #: What a certificate depends on beside its job.
 SOURCES = (Path(certificate.__file__), Path(exhausted.__file__))
@@ -94,6 +104,59 @@ def families(config: Config, found: Stages, gap: float) -> list[dict]:
             "search": searches[-1],
         })  # fmt: skip
     return rows
+
+
+def method_rows(rows: list[PowerRow]) -> list[dict]:
+    """A row for each of METHODS: the certified bounds for n <= 128, LSB, for a constant W and for
+    any; None if there is none. rows: those of `power_rows`."""
+    limit = float(adversarial.LIMITS[-1])
+    jobs = [
+        (CONFIGS[name], stages(CONFIGS[name], rows), steep, 1.0, limit, METHOD_GAP)
+        for name in METHODS
+        for steep in (False, True)
+    ]
+    with ProcessPoolExecutor(os.cpu_count()) as pool:
+        bounds = [found and found["bound_lsb"] for found in pool.map(search, jobs)]
+    return [
+        {"name": name, "constant_lsb": bounds[2 * k], "any_lsb": bounds[2 * k + 1]}
+        for k, name in enumerate(METHODS)
+    ]
+
+
+def methods_table(rows: list[dict]) -> Table:
+    """`rows` of `method_rows` for the terminal."""
+    out = Table(title="certified for n ≤ 128, LSB", title_style="bold")
+    for title in ("method", "W constant", "any W"):
+        out.add_column(title, justify="left" if title == "method" else "right")
+    for row in rows:
+        bounds = (row["constant_lsb"], row["any_lsb"])
+        out.add_row(row["name"], *(above(b, 4) if b else "–" for b in bounds))
+    return out
+
+
+def methods(record: bool) -> int:
+    """Certify METHODS, print; returns the exit code. Raises InputError, BuildError."""
+    recorded.check(record)
+    steps = Steps()
+    with steps.step("powers", "every power cos(s)^n") as step:
+        powers = power_rows(DEFAULT, False, step.done)
+    with steps.step("inputs", "all inputs of each method, by branch and bound"):
+        rows = method_rows(powers)
+    console.show(methods_table(rows))
+    seen = {row["name"]: row for row in recorded.figures("stability")["methods"]}
+    failures = [
+        f"{row['name']}: {seen[row['name']]['max_lsb']:.4f} LSB is seen, {row['any_lsb']:.4f} is "
+        "certified"
+        for row in rows if row["any_lsb"] and row["any_lsb"] < seen[row["name"]]["max_lsb"]
+    ]  # fmt: skip
+    if record:
+        recorded.record(
+            "prove-methods", "make prove METHODS=1", ("python-flint", "numpy"), {"methods": rows},
+            {"methods": len(rows)}, failed=bool(failures),
+        )  # fmt: skip
+    for line in failures:
+        console.failure(line)
+    return console.FAILED if failures else console.GOOD
 
 
 def beyond(rows: list[dict]) -> list[str]:

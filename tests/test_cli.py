@@ -586,7 +586,7 @@ FORWARDED = {
     "tessellation": ("", "RECORD"),
     "stability": ("", "RECORD"),
     "adversarial": ("", "KEEP RECORD"),
-    "prove": ("CONFIG", "AGAIN RECORD"),
+    "prove": ("CONFIG", "AGAIN METHODS RECORD"),
     "report": ("", ""),
     "synth": ("CONFIG SCENE GRADE SEEDS", "GATES RECORD"),
     "netlist": ("", "RECORD"),

@@ -162,6 +162,19 @@ def test_no_input_errs_more_than_its_own_bound(steep):
     assert closest > 0.25  # before the last rounding, too; all roundings seldom add up
 
 
+@pytest.mark.parametrize("name", prove.METHODS)
+def test_no_input_errs_more_by_another_method(name):
+    """Before the last rounding, too, at random inputs and around a worst one."""
+    config = CONFIGS[name]
+    assert exhausted.power_digest(config) == KEPT["power_digest"]
+    bound = ErrorBound(config, prove.stages(config, list(ROWS.values())), True)
+    for near in (None, worst(KEPT["families"][-1])):
+        points, boxes = inputs(250, near, 0.003)
+        _, unrounded, exact = adversarial.evaluate(points, config)
+        bounds = np.array([lsb(bound, box) for box in boxes])
+        assert (np.abs(unrounded - exact) <= bounds - 0.5).all()
+
+
 @pytest.mark.parametrize("row", adversarial.kept(), ids=lambda row: f"{row['limit']}")
 def test_the_worst_inputs_reach_most_of_their_own_bound(row):
     normal, half = np.array(row["normal"], float), np.array(row["half_vector"], float)

@@ -27,6 +27,7 @@ import numpy as np
 from phong75.model.analysis import error_budget, reference
 from phong75.model.arrays import Ints, Reals, Trace
 from phong75.model.config import DEFAULT as C
+from phong75.model.config import Config
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable
 from phong75.model.twin.core.normalizer import leading_zeros
 from phong75.model.twin.core.phong_unit import shade
@@ -98,8 +99,10 @@ def _points(inputs: Inputs) -> np.ndarray:
     return np.where(right, inputs.weight[1][:, None], inputs.weight[0][:, None])
 
 
-def evaluate(inputs: Inputs) -> tuple[Ints, Reals, Reals]:
-    """Shade all points with the twin and in float64, one channel.
+def evaluate(inputs: Inputs, config: Config = C) -> tuple[Ints, Reals, Reals]:
+    """Shade all points with the twin of `config` and in float64, one channel.
+
+    config: has the words of the default at its ports.
 
     Returns (codes int[n], 255 S of the twin before the final rounding, exact 255 S), float64[n].
     """
@@ -115,9 +118,9 @@ def evaluate(inputs: Inputs) -> tuple[Ints, Reals, Reals]:
     half_vector: Any = inputs.half_vector
     frame = Frame(1, 1, half_vector, False, (0, 0, 0), table, np.zeros(0, SPAN_DTYPE))
     trace: Trace = {}
-    codes = shade(inputs.normal, material, frame, C, trace)[0]
+    codes = shade(inputs.normal, material, frame, config, trace)[0]
     white = (1 << C.colour_bits) - 1
-    unrounded = white * C.intensity.real(trace["colour_channel.intensity"][0])
+    unrounded = white * config.intensity.real(trace["colour_channel.intensity"][0])
     real = C.coefficient.real
     exact = reference.shade(
         inputs.normal.T.astype(float), real(table.ambient), real(table.diffuse), real(points),
