@@ -220,9 +220,10 @@
   + 1                                /* interpolate: add */ \
   + 1 )                              /* interpolate: round */
 
-// Of the table of W(i), with or without jumps.
+// Of W(i): one word of a material, or a table, with or without jumps.
 `define PHONG_WEIGHT_LATENCY \
-  (`PHONG_WEIGHT_JUMPS > 0 ? `PHONG_STEPPED_WEIGHT_LATENCY : `PHONG_SPECULAR_WEIGHT_LATENCY)
+  ( !`PHONG_WEIGHT_FUNCTION ? `PHONG_SMALL_RAM_LATENCY : \
+    `PHONG_WEIGHT_JUMPS > 0 ? `PHONG_STEPPED_WEIGHT_LATENCY : `PHONG_SPECULAR_WEIGHT_LATENCY )
 
 `define PHONG_WEIGHT_PRODUCT_LATENCY \
   ( `PHONG_CONSTANT_WEIGHT ? `PHONG_CONSTANT_WEIGHT_LEVELS : `PHONG_MULTIPLIER_LATENCY )

@@ -19,6 +19,7 @@ core/reflection.v
 core/half_vector_cross.v
 core/versine_of_cross.v
 core/specular_cosine.v
+core/specular_factors.v
 core/specular_power.v
 core/specular_power_tables.v
 core/specular_weight.v

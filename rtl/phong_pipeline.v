@@ -2,9 +2,10 @@
 // phong_pipeline: shades spans: spans in, coloured pixels out (Bui Tuong Phong, "Illumination for
 // Computer Generated Pictures", 1975).
 // span_walker turns spans into pixels. One unit gives each pixel its colour, by the technique of
-// the configuration: phong_unit (or quadratic_unit; lights_unit for several lights, with light_turns
-// before the walker if they take turns), or one of the techniques that Phong compares with, gouraud_unit (interpolated intensities) and flat_unit (one intensity per face). pixel_fifo
-// holds finished pixels under back-pressure. The module holds the wiring, in data order.
+// the configuration: phong_unit; quadratic_unit; lights_unit for several lights, with light_turns
+// before the walker if they take turns; or one of the techniques that Phong compares with,
+// gouraud_unit (interpolated intensities) and flat_unit (one intensity per face). pixel_fifo holds
+// finished pixels under back-pressure. The module holds the wiring, in data order.
 // Latency: PHONG_PIXEL_LATENCY + 3 cycles from an accepted span to its first pixel (see latency.vh;
 // 77 by default).
 // Throughput: one pixel per cycle, also if every span has one pixel.

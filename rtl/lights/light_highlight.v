@@ -41,9 +41,6 @@ module light_highlight (
 
   localparam COSINE_BITS          = `PHONG_COSINE_BITS;
   localparam MATERIAL_BITS        = `PHONG_MATERIAL_BITS;
-  localparam INDEX_BITS           = `PHONG_WEIGHT_INDEX_BITS;
-  localparam COEFFICIENT_BITS     = `PHONG_COEFFICIENT_BITS;
-  localparam COEFFICIENT_FRACTION = `PHONG_COEFFICIENT_FRACTION;
   localparam VERSINE_BITS         = `PHONG_VERSINE_BITS;
   localparam POWER_BITS           = `PHONG_POWER_BITS;
   localparam POWER_FRACTION       = `PHONG_POWER_FRACTION;
@@ -52,21 +49,15 @@ module light_highlight (
   localparam HIGHLIGHT_BITS       = `PHONG_HIGHLIGHT_BITS;
   localparam HIGHLIGHT_FRACTION   = `PHONG_HIGHLIGHT_FRACTION;
   localparam ROUNDS               = `PHONG_ROUNDS_HIGHLIGHT;
-  localparam POWER_FUNCTION       = `PHONG_POWER_FUNCTION;   // 0: n is always 1
-  localparam WEIGHT_FUNCTION      = `PHONG_WEIGHT_FUNCTION;  // 0: W does not depend on i
   localparam HAS_CURVES           = `PHONG_HAS_CURVES;       // 1: any curve in place of cos(s)^n
-  localparam WEIGHT_JUMPS         = `PHONG_WEIGHT_JUMPS;     // 0: W is continuous
   localparam LATENCY              = `PHONG_LIGHT_HIGHLIGHT_LATENCY;
 
-  // Cycles from the input to the use of W(i) and cos(s)^n, and to the look-up of W.
+  // Cycles from the input to the use of W(i) and cos(s)^n.
   localparam POWER_AT = `PHONG_HIGHLIGHT_LATENCY + `PHONG_POWER_LATENCY;
-  localparam WEIGHT_AT = POWER_AT - (WEIGHT_FUNCTION ? `PHONG_WEIGHT_LATENCY
-                                                     : `PHONG_SMALL_RAM_LATENCY);
   localparam PRODUCT_BITS = WEIGHT_BITS + POWER_BITS;
 
-  // ---- cos(s)^n ----
-  wire [VERSINE_BITS-1:0] versine;  // u0.22, 1 - cos(s)
-  wire [POWER_BITS-1:0] power;      // u0.18
+  // ---- 1 - cos(s) ----
+  wire [VERSINE_BITS-1:0] versine;  // u0.22
 
   reflection u_reflection (
       .clk(clk),
@@ -78,105 +69,54 @@ module light_highlight (
       .versine(versine)
   );
 
-  generate
-    if (POWER_FUNCTION) begin : gen_power
-      wire [MATERIAL_BITS-1:0] material_curve;
-
-      if (HAS_CURVES) begin : gen_curve
-        delay #(
-            .BITS  (MATERIAL_BITS),
-            .CYCLES(`PHONG_HIGHLIGHT_LATENCY + `PHONG_CURVE_OCTAVE_LATENCY)
-        ) u_material (
-            .clk(clk),
-            .in (material),
-            .out(material_curve)
-        );
-      end else begin : gen_no_curve
-        assign material_curve = {MATERIAL_BITS{1'b0}};
-      end
-
-      specular_power u_specular_power (
-          .clk(clk),
-          .versine(versine),
-          .exponent(exponent),
-          .power(power),
-          .write_curve(write_curve),
-          .write_line(write_line),
-          .write_jumps(write_curve_jumps),
-          .write_material(write_address[INDEX_BITS+:MATERIAL_BITS]),
-          .write_word(write_word),
-          .material(material_curve)
-      );
-    end else begin : gen_cosine
-      specular_cosine u_specular_cosine (
-          .clk(clk),
-          .versine(versine),
-          .cosine(power)
-      );
-
-      wire unused = &{1'b0, exponent};
-    end
-  endgenerate
-
-  // ---- W(i) ----
+  // ---- cos(s)^n, W(i) ----
+  wire [POWER_BITS-1:0] power;    // u0.18
   wire [WEIGHT_BITS-1:0] weight;  // u1.17
+  wire [MATERIAL_BITS-1:0] material_curve;
   wire [MATERIAL_BITS-1:0] material_weight;
   wire [COSINE_BITS-1:0] cosine_weight;
 
+  generate
+    if (HAS_CURVES) begin : gen_curve
+      delay #(
+          .BITS  (MATERIAL_BITS),
+          .CYCLES(`PHONG_HIGHLIGHT_LATENCY + `PHONG_CURVE_OCTAVE_LATENCY)
+      ) u_material (
+          .clk(clk),
+          .in (material),
+          .out(material_curve)
+      );
+    end else begin : gen_no_curve
+      assign material_curve = {MATERIAL_BITS{1'b0}};
+    end
+  endgenerate
+
   delay #(
       .BITS  (MATERIAL_BITS + COSINE_BITS),
-      .CYCLES(WEIGHT_AT)
+      .CYCLES(POWER_AT - `PHONG_WEIGHT_LATENCY)
   ) u_weight_at (
       .clk(clk),
       .in ({material, cosine}),
       .out({material_weight, cosine_weight})
   );
 
-  generate
-    if (WEIGHT_FUNCTION && WEIGHT_JUMPS > 0) begin : gen_stepped_weight
-      stepped_weight u_stepped_weight (
-          .clk(clk),
-          .write_enable(write_weight),
-          .write_jumps(write_weight_jumps),
-          .write_address(write_address),
-          .write_word(write_word),
-          .material(material_weight),
-          .cosine(cosine_weight),
-          .weight(weight)
-      );
-    end else if (WEIGHT_FUNCTION) begin : gen_weight
-      specular_weight u_specular_weight (
-          .clk(clk),
-          .write_enable(write_weight),
-          .write_address(write_address),
-          .write_word(write_word),
-          .material(material_weight),
-          .cosine(cosine_weight),
-          .weight(weight)
-      );
-    end else begin : gen_material_weight  // the left point of interval 0
-      wire [COEFFICIENT_BITS-1:0] left;
-
-      small_ram #(
-          .ADDRESS_BITS(MATERIAL_BITS),
-          .WORD_BITS(COEFFICIENT_BITS)
-      ) u_weight_table (
-          .clk(clk),
-          .write_enable(write_weight),
-          .write_address(write_address[INDEX_BITS+:MATERIAL_BITS]),
-          .write_word(write_word[COEFFICIENT_BITS-1:0]),
-          .address(material_weight),
-          .word(left)
-      );
-
-      assign weight = {left, {WEIGHT_FRACTION - COEFFICIENT_FRACTION{1'b0}}};
-
-      wire unused = &{1'b0, cosine_weight, write_address, write_word};
-    end
-  endgenerate
-
-  wire unused_reflectance =
-      &{1'b0, write_curve, write_line, write_curve_jumps, write_weight_jumps};
+  specular_factors u_specular_factors (
+      .clk(clk),
+      .write_weight(write_weight),
+      .write_curve(write_curve),
+      .write_line(write_line),
+      .write_curve_jumps(write_curve_jumps),
+      .write_weight_jumps(write_weight_jumps),
+      .write_address(write_address),
+      .write_word(write_word),
+      .versine(versine),
+      .material_curve(material_curve),
+      .exponent(exponent),
+      .cosine(cosine_weight),
+      .material_weight(material_weight),
+      .power(power),
+      .weight(weight)
+  );
 
   wire [PRODUCT_BITS-1:0] product;  // u1.35
 

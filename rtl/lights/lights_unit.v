@@ -62,7 +62,6 @@ module lights_unit #(
     output wire unsupported   // one-cycle pulse: a write or a span needs what this build leaves out
 );
 
-  localparam TURNS            = `PHONG_TURNS;
   localparam MATERIAL_BITS    = `PHONG_MATERIAL_BITS;
   localparam COEFFICIENT_BITS = `PHONG_COEFFICIENT_BITS;
   localparam INDEX_BITS       = `PHONG_WEIGHT_INDEX_BITS;
@@ -78,7 +77,6 @@ module lights_unit #(
   localparam POWER_FUNCTION   = `PHONG_POWER_FUNCTION;  // 0: n is always 1
   localparam SEGMENT_BITS     = `PHONG_SEGMENT_BITS;
   localparam HAS_CURVES       = `PHONG_HAS_CURVES;      // 1: any curve in place of cos(s)^n
-  localparam WEIGHT_JUMPS     = `PHONG_WEIGHT_JUMPS;    // 0: W is continuous
   localparam SPAN_HALF_VECTOR = `PHONG_SPAN_HALF_VECTOR;  // 1: spans bring hx and hz
   localparam ATTENUATION      = `PHONG_ATTENUATION;       // 0: f is 1
   localparam HIGHLIGHT_COLOUR = `PHONG_HIGHLIGHT_COLOUR;  // 0: every highlight is white
@@ -126,26 +124,16 @@ module lights_unit #(
   wire [MATERIAL_BITS+SEGMENT_BITS-1:0] write_line;
   wire [2*`PHONG_MAX_JUMPS-1:0] write_curve_jumps, write_weight_jumps;
 
-  generate
-    if (HAS_CURVES || WEIGHT_JUMPS > 0) begin : gen_reflectance
-      reflectance_map u_reflectance_map (
-          .clk(clk),
-          .write_enable(write_enable),
-          .write_address(write_address),
-          .plain_enable(plain_enable),
-          .write_curve(write_curve),
-          .write_line(write_line),
-          .write_curve_jumps(write_curve_jumps),
-          .write_weight_jumps(write_weight_jumps)
-      );
-    end else begin : gen_no_reflectance
-      assign plain_enable = write_enable;
-      assign write_curve = 1'b0;
-      assign write_line = {MATERIAL_BITS + SEGMENT_BITS{1'b0}};
-      assign write_curve_jumps = {2 * `PHONG_MAX_JUMPS{1'b0}};
-      assign write_weight_jumps = {2 * `PHONG_MAX_JUMPS{1'b0}};
-    end
-  endgenerate
+  reflectance_map u_reflectance_map (
+      .clk(clk),
+      .write_enable(write_enable),
+      .write_address(write_address),
+      .plain_enable(plain_enable),
+      .write_curve(write_curve),
+      .write_line(write_line),
+      .write_curve_jumps(write_curve_jumps),
+      .write_weight_jumps(write_weight_jumps)
+  );
 
   register_map u_register_map (
       .clk(clk),
@@ -376,31 +364,19 @@ module lights_unit #(
       wire depth_overflow;
 
       for (c = 0; c < 3; c = c + 1) begin : gen_component
-        if (TURNS > 1) begin : gen_contexts
-          context_interpolator u_interpolator (
-              .clk(clk),
-              .single(last_turn == 0),
-              .advance(advance),
-              .load(load),
-              .valid(turn_valid),
-              .turn(turn),
-              .next_turn(next_turn),
-              .start(values[(6*u+c)*NORMAL_BITS+:NORMAL_BITS]),
-              .step(values[(6*u+3+c)*NORMAL_BITS+:NORMAL_BITS]),
-              .value(normal[c*NORMAL_BITS+:NORMAL_BITS]),
-              .overflow(overflow_here[c])
-          );
-        end else begin : gen_one_context
-          linear_interpolator u_interpolator (
-              .clk(clk),
-              .advance(advance),
-              .load(load),
-              .start(values[(6*u+c)*NORMAL_BITS+:NORMAL_BITS]),
-              .step(values[(6*u+3+c)*NORMAL_BITS+:NORMAL_BITS]),
-              .value(normal[c*NORMAL_BITS+:NORMAL_BITS]),
-              .overflow(overflow_here[c])
-          );
-        end
+        context_interpolator u_interpolator (
+            .clk(clk),
+            .single(last_turn == 0),
+            .advance(advance),
+            .load(load),
+            .valid(turn_valid),
+            .turn(turn),
+            .next_turn(next_turn),
+            .start(values[(6*u+c)*NORMAL_BITS+:NORMAL_BITS]),
+            .step(values[(6*u+3+c)*NORMAL_BITS+:NORMAL_BITS]),
+            .value(normal[c*NORMAL_BITS+:NORMAL_BITS]),
+            .overflow(overflow_here[c])
+        );
       end
 
       assign overflows[u] = |overflow_here | depth_overflow;
@@ -549,40 +525,32 @@ module lights_unit #(
         wire [DEPTH_BITS-1:0] depth;
         wire [ROUNDED_BITS-1:0] scaled;
 
-        if (TURNS > 1) begin : gen_contexts
-          context_interpolator #(
-              .NORMAL_BITS(DEPTH_BITS)
-          ) u_interpolator (
-              .clk(clk),
-              .single(last_turn == 0),
-              .advance(advance),
-              .load(load),
-              .valid(turn_valid),
-              .turn(turn),
-              .next_turn(next_turn),
-              .start(values[DEPTH_FROM+2*u*DEPTH_BITS+:DEPTH_BITS]),
-              .step(values[DEPTH_FROM+(2*u+1)*DEPTH_BITS+:DEPTH_BITS]),
-              .value(depth),
-              .overflow(depth_overflow)
-          );
-        end else begin : gen_one_context
-          linear_interpolator #(
-              .NORMAL_BITS(DEPTH_BITS)
-          ) u_interpolator (
-              .clk(clk),
-              .advance(advance),
-              .load(load),
-              .start(values[DEPTH_FROM+2*u*DEPTH_BITS+:DEPTH_BITS]),
-              .step(values[DEPTH_FROM+(2*u+1)*DEPTH_BITS+:DEPTH_BITS]),
-              .value(depth),
-              .overflow(depth_overflow)
-          );
-        end
+        context_interpolator #(
+            .NORMAL_BITS(DEPTH_BITS)
+        ) u_interpolator (
+            .clk(clk),
+            .single(last_turn == 0),
+            .advance(advance),
+            .load(load),
+            .valid(turn_valid),
+            .turn(turn),
+            .next_turn(next_turn),
+            .start(values[DEPTH_FROM+2*u*DEPTH_BITS+:DEPTH_BITS]),
+            .step(values[DEPTH_FROM+(2*u+1)*DEPTH_BITS+:DEPTH_BITS]),
+            .value(depth),
+            .overflow(depth_overflow)
+        );
+
+        // Fields 16 to 31 of each material hold 16 intervals of the factor: see light_map.
+        localparam FIELD_BITS = $clog2(16);
+        wire [INDEX_BITS-1:0] to_factor = {
+          table_address[INDEX_BITS+:INDEX_BITS-FIELD_BITS], table_address[FIELD_BITS-1:0]
+        };
 
         light_attenuation u_light_attenuation (
             .clk(clk),
             .write_enable(write_factor & to_unit[u]),
-            .write_address({to_turn, table_address[INDEX_BITS+:INDEX_BITS-4], table_address[3:0]}),
+            .write_address({to_turn, to_factor}),
             .write_word(table_word),
             .depth(depth),
             .turn(turn),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // reflectance_map: decodes what the write port holds for curves of cos(s) and for jumps, beside
-// register_map.
+// register_map. A build without curves and jumps has no such words: all writes go on.
 //
 //   address                        word
 //   {1, zeros, material, line}     {step s1.16, left u1.16}: a line of a curve (builds with curves)
@@ -20,7 +20,8 @@ module reflectance_map #(
     parameter MATERIAL_BITS = `PHONG_MATERIAL_BITS,
     parameter INDEX_BITS    = `PHONG_WEIGHT_INDEX_BITS,  // of a field
     parameter SEGMENT_BITS  = `PHONG_SEGMENT_BITS,       // of a line of a curve
-    parameter CURVES        = `PHONG_HAS_CURVES          // 0: the top bit of the address is plain
+    parameter CURVES        = `PHONG_HAS_CURVES,         // 0: the top bit of the address is plain
+    parameter REFLECTANCE   = `PHONG_HAS_CURVES || `PHONG_WEIGHT_JUMPS > 0  // 1: such words
 ) (
     input wire clk,
 
@@ -31,10 +32,10 @@ module reflectance_map #(
     output wire plain_enable,  // the write is for register_map and light_map
 
     // strobes for the tables
-    output reg                                  write_curve,         // a line of a curve
-    output reg [MATERIAL_BITS+SEGMENT_BITS-1:0] write_line,          // its address
-    output reg [2*`PHONG_MAX_JUMPS-1:0]         write_curve_jumps,   // see `jumps`
-    output reg [2*`PHONG_MAX_JUMPS-1:0]         write_weight_jumps
+    output wire                                 write_curve,         // a line of a curve
+    output wire [MATERIAL_BITS+SEGMENT_BITS-1:0] write_line,          // its address
+    output wire [2*`PHONG_MAX_JUMPS-1:0]         write_curve_jumps,   // see `jumps`
+    output wire [2*`PHONG_MAX_JUMPS-1:0]         write_weight_jumps
 );
 
   localparam [INDEX_BITS-1:0] WEIGHT_JUMP = `PHONG_FIELD_WEIGHT_JUMP;
@@ -42,24 +43,44 @@ module reflectance_map #(
   localparam WORDS = 2 * `PHONG_MAX_JUMPS;  // of the jumps of one material
   localparam LINE_BITS = MATERIAL_BITS + SEGMENT_BITS;
 
-  wire to_curve = (CURVES != 0) & write_address[ADDRESS_BITS-1];
-  wire [LINE_BITS+ADDRESS_BITS-1:0] padded = {{LINE_BITS{1'b0}}, write_address};
-  wire [INDEX_BITS-1:0] field = write_address[INDEX_BITS-1:0];
-  wire write_field = plain_enable & write_address[MATERIAL_BITS+INDEX_BITS];
+  generate
+    if (REFLECTANCE) begin : gen_reflectance
+      reg curve;
+      reg [LINE_BITS-1:0] line;
+      reg [WORDS-1:0] curve_jumps, weight_jumps;
 
-  assign plain_enable = write_enable & ~to_curve;
+      wire to_curve = (CURVES != 0) & write_address[ADDRESS_BITS-1];
+      wire [LINE_BITS+ADDRESS_BITS-1:0] padded = {{LINE_BITS{1'b0}}, write_address};
+      wire [INDEX_BITS-1:0] field = write_address[INDEX_BITS-1:0];
+      wire write_field = plain_enable & write_address[MATERIAL_BITS+INDEX_BITS];
 
-  integer k;
-  always @(posedge clk) begin
-    write_curve <= write_enable & to_curve;
-    write_line <= padded[LINE_BITS-1:0];
-    for (k = 0; k < WORDS; k = k + 1) begin
-      write_curve_jumps[k] <= write_field & (field == CURVE_JUMP + k[INDEX_BITS-1:0]);
-      write_weight_jumps[k] <= write_field & (field == WEIGHT_JUMP + k[INDEX_BITS-1:0]);
+      integer k;
+      always @(posedge clk) begin
+        curve <= write_enable & to_curve;
+        line <= padded[LINE_BITS-1:0];
+        for (k = 0; k < WORDS; k = k + 1) begin
+          curve_jumps[k] <= write_field & (field == CURVE_JUMP + k[INDEX_BITS-1:0]);
+          weight_jumps[k] <= write_field & (field == WEIGHT_JUMP + k[INDEX_BITS-1:0]);
+        end
+      end
+
+      assign plain_enable = write_enable & ~to_curve;
+      assign write_curve = curve;
+      assign write_line = line;
+      assign write_curve_jumps = curve_jumps;
+      assign write_weight_jumps = weight_jumps;
+
+      wire unused = &{1'b0, padded};
+    end else begin : gen_no_reflectance
+      assign plain_enable = write_enable;
+      assign write_curve = 1'b0;
+      assign write_line = {LINE_BITS{1'b0}};
+      assign write_curve_jumps = {WORDS{1'b0}};
+      assign write_weight_jumps = {WORDS{1'b0}};
+
+      wire unused = &{1'b0, clk, write_address};
     end
-  end
-
-  wire unused = &{1'b0, padded};
+  endgenerate
 
 endmodule
 

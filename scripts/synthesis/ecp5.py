@@ -26,7 +26,7 @@ from pathlib import Path
 
 from phong75.model.config import Config
 from phong75.sim import design
-from phong75.sim.build import generate_header, run_tool
+from phong75.sim.build import VERILATOR, generate_header, run_tool
 from phong75.sim.design import BUILD
 from phong75.sim.elaborate import includes, structure
 
@@ -458,7 +458,7 @@ def technology_text(config: Config) -> str:
     `config`: macros expanded, without comments. Raises BuildError.
     """
     files = sorted(design.ECP5.glob("*.v"))
-    return run_tool(["verilator", "-E", "-P", *includes(config), *files])
+    return run_tool([VERILATOR, "-E", "-P", *includes(config), *files])
 
 
 def design_key(config: Config, grade: int, seed: int, tools: dict[str, str] | None = None) -> str:

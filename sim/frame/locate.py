@@ -135,7 +135,7 @@ def locate(frame: Frame, pixel: int, config: Config = DEFAULT, rtl: Path | None 
         for module in modules:
             (folder / "where.json").write_text(json.dumps(where | {"module": module}))
             top, text = bench_source(module)
-            bench = Bench(top, build, {f"{top}.v": text}, rtl)
+            bench = Bench(top, build, {f"{top}.v": text}, rtl, quick=True)
             handed = {environment.VECTORS: str(folder)}
             bench.run("phong75.sim.frame.locate", folder, extra_env=handed)
             message = json.loads((folder / "result.json").read_text())

@@ -61,8 +61,7 @@ def vectors(
         return {k: v for k, v in trace.items() if k.partition(".")[0] in modules}
 
     ones = np.ones_like(material)
-    zero = (normals[0] == 0).all(axis=0).astype(np.int64)
-    shift = first["light_align.leading_zeros"][0]
+    shift, zero = first["light_align.leading_zeros"]
     yield Vectors(
         "light_align", [*normals[light], shift, zero], stages("light_align"),
         {"two_sided": int(frame.two_sided), "valid": 1},

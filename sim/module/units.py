@@ -85,6 +85,9 @@ _TABLE_PORTS = (
 _MANTISSAS = tuple(
     f"+mantissas[{c} * `PHONG_MANTISSA_BITS +: `PHONG_MANTISSA_BITS]" for c in range(3)
 )
+#: Where the factors of the highlight are computed.
+_POWER_TABLES = "u_specular_factors.gen_power.u_specular_power.gen_tables.u_method"
+_WEIGHT_TABLE = "u_specular_factors.gen_weight.u_specular_weight"
 _LOG_VALUE = _sum(ZEROS, SHIFT, ROM)
 _LOG = L.format("LOG")
 _X = _sum(_LOG, MUL, 3)
@@ -104,7 +107,7 @@ MODULES = {
     "light_align": Module(
         ("x", "y", "z", "first_shift", "first_zero"),
         (
-            Stage("light_align.leading_zeros", ("own_shift",), _sum(1, ZEROS)),
+            Stage("light_align.leading_zeros", ("own_shift", "zero"), _sum(1, ZEROS)),
             Stage("light_align.shift", ("shift_p5", "less_p5"), _sum(1, ZEROS, 2)),
             Stage("light_align.align", _MANTISSAS, L.format("LIGHT_ALIGN")),
             Stage("light_align.lit", ("lit",), L.format("LIGHT_ALIGN")),
@@ -147,11 +150,11 @@ MODULES = {
         children=(
             Child("u_reflection", "reflection", "0"),
             Child(
-                "gen_power.u_specular_power.gen_tables.u_method", "specular_power_tables",
+                _POWER_TABLES, "specular_power_tables",
                 L.format("REFLECTION"),
             ),
             Child(
-                "gen_weight.u_specular_weight", "specular_weight",
+                _WEIGHT_TABLE, "specular_weight",
                 _sum(L.format("REFLECTION"), L.format("POWER"),
                      "-" + L.format("SPECULAR_WEIGHT")),
             ),
@@ -455,11 +458,11 @@ MODULES = {
         children=(
             Child("gen_specular.gen_reflection.u_reflection", "reflection", "0"),
             Child(
-                "gen_specular.gen_power.u_specular_power.gen_tables.u_method",
+                f"gen_specular.{_POWER_TABLES}",
                 "specular_power_tables", L.format("REFLECTION"),
             ),
             Child(
-                "gen_specular.gen_weight.u_specular_weight", "specular_weight",
+                f"gen_specular.{_WEIGHT_TABLE}", "specular_weight",
                 _sum(L.format("REFLECTION"), L.format("POWER"),
                      "-" + L.format("SPECULAR_WEIGHT")),
             ),

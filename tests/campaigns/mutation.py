@@ -20,6 +20,7 @@ Exit code: 0; 1 if a mutant survived; 2 if the command line is wrong.
 from __future__ import annotations
 
 import datetime
+import itertools
 import json
 import logging
 import multiprocessing
@@ -49,7 +50,7 @@ from phong75.sim.build import Bench, BuildError
 from phong75.sim.frame.run_frame import SimulationError
 from phong75.sim.limits import Watch
 from phong75.sim.results import read_results
-from tests.campaigns.relevant_benches import contents, relevant_benches
+from tests.campaigns.relevant_benches import relevant_benches
 from tests.configuration_tests import CONFIGURATION_TESTS, configuration_test
 from tests.modules.benches import ModuleBench, module_bench
 
@@ -214,9 +215,9 @@ def mutants(path: Path, kinds: tuple[str, ...] = KINDS) -> list[Mutant]:
 #: {bench: hash of the program that Verilator generates for the design itself}, per worker.
 _PROGRAMS: dict[str, str] = {}
 
-#: {file: its relevant benches}, per worker. The bench that killed the last mutant is the first,
-#: because the next mutant of the file is often killed by the same bench.
-_ORDER: dict[str, list[str]] = {}
+#: {file: benches that killed mutants of it, the last one first}, per worker. The next mutant of the
+#: file is often killed by the same bench.
+_KILLERS: dict[str, list[str]] = {}
 
 
 class RejectedDesignError(Exception):
@@ -308,22 +309,34 @@ def killed_by(mutant: Mutant) -> tuple[str, bool]:
     shutil.rmtree(rtl, ignore_errors=True)
     shutil.copytree(design.RTL, rtl)
     (rtl / mutant.path.relative_to(design.RTL)).write_text(mutant.text())
-    order = _ORDER.setdefault(mutant.file, relevant_benches(mutant.path))
+    killers = _KILLERS.setdefault(mutant.file, [])
+    tried: set[str] = set()
     differs = False
-    for name in order:
+    for name in itertools.chain(list(killers), relevant_benches(mutant.path)):
+        if name in tried:
+            continue
+        tried.add(name)
         own_program = _program(name)
         program, reason = judge(name, rtl)
         differs |= program != own_program
         if reason:
-            order.remove(name)
-            order.insert(0, name)
+            if name in killers:
+                killers.remove(name)
+            killers.insert(0, name)
             return f"{name}: {reason}", differs
     return (LINT if lint_message(rtl) else ""), differs
 
 
 def lint_message(rtl: Path) -> str:
     """Output of Verilator's -Wall for the whole design in `rtl`, as in `make lint`; "" if none."""
-    command = ["verilator", "--lint-only", "-Wall", "--no-timing", "--top-module", "phong_pipeline"]
+    command = [
+        build.VERILATOR,
+        "--lint-only",
+        "-Wall",
+        "--no-timing",
+        "--top-module",
+        "phong_pipeline",
+    ]
     try:
         for config in (DEFAULT, *CONFIGS):
             folders = [build.generate_header(config), *design.folders(rtl)]
@@ -399,10 +412,8 @@ def _campaign(chosen: list[Mutant], jobs: int) -> list[Mutant]:
         return survivors
     tried = _outcomes()
     shutil.rmtree(DESIGN_RESULTS, ignore_errors=True)
-    # Both before the workers start, which all need them.
-    console.phase("compiling Verilator's runtime and elaborating all benches (once)")
-    build.runtime()
-    contents()
+    console.phase("compiling Verilator's runtime (once)")
+    build.runtime()  # before the workers start, which all need it
     begin = time.monotonic()
     with _pool(jobs) as workers:
         for done, (reason, differs) in enumerate(workers.imap(killed_by, chosen), 1):

@@ -12,6 +12,7 @@ from __future__ import annotations
 import functools
 import os
 from collections import Counter
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -26,7 +27,7 @@ BENCHES = (*CONFIGURATION_TESTS, *PRIMITIVES, *(name for name in NAMES if name !
 FIRST = "default"
 
 
-def _instances(name: str) -> Counter[str]:
+def instances_of(name: str) -> Counter[str]:
     """{module: number of its instances} in the bench `name`. Raises BuildError."""
     if name in CONFIGURATION_TESTS:
         return instances(configuration_test(name).config)
@@ -42,22 +43,31 @@ def contents() -> dict[str, Counter[str]]:
     the results in the build folder.
     """
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return dict(zip(BENCHES, pool.map(_instances, BENCHES), strict=True))
+        return dict(zip(BENCHES, pool.map(instances_of, BENCHES), strict=True))
 
 
-def relevant_benches(file: Path) -> list[str]:
+def relevant_benches(file: Path) -> Iterator[str]:
     """The benches that can notice a change of `file`, a module or a header of the design.
 
     The order is FIRST, then the benches of the module itself, then benches with few instances
-    before those with many, because a small bench is built in a shorter time. Raises BuildError.
+    before those with many, because a small bench is built in a shorter time. All benches are
+    elaborated only if those of the module do not suffice. Raises BuildError.
     """
     module = file.stem
-    relevant = [
-        name for name, modules in contents().items() if file.suffix == ".vh" or module in modules
-    ]
+    header = file.suffix == ".vh"
+    own = [name for name in BENCHES if _module(name) == module]
+    if FIRST not in own and (header or module in instances_of(FIRST)):
+        own.insert(0, FIRST)
+    yield from own
+    others = [
+        name for name, modules in contents().items()
+        if name not in own and (header or module in modules)
+    ]  # fmt: skip
+    yield from sorted(others, key=lambda name: contents()[name].total())
 
-    def priority(name: str) -> tuple[bool, bool, int]:
-        own = name in (module, f"primitives/{module}") or name.startswith(f"{module}@")
-        return name != FIRST, not own, contents()[name].total()
 
-    return sorted(relevant, key=priority)
+def _module(bench: str) -> str:
+    """The module of which `bench` is the own bench, "" for a configuration test."""
+    if bench in CONFIGURATION_TESTS:
+        return ""
+    return bench.removeprefix("primitives/").partition("@")[0]

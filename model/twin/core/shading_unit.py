@@ -11,15 +11,10 @@ import numpy as np
 from phong75.model.arrays import Flags, Ints, Trace
 from phong75.model.config import Config
 from phong75.model.frame import Frame
-from phong75.model.reflectance import power_words
 from phong75.model.twin.core.colour_channel import coefficient, colour_channel
 from phong75.model.twin.core.reflection import reflection
-from phong75.model.twin.core.specular_cosine import specular_cosine
-from phong75.model.twin.core.specular_power import specular_power
-from phong75.model.twin.core.specular_weight import constant_weight, specular_weight
+from phong75.model.twin.core.specular_factors import specular_factors
 from phong75.model.twin.core.versine_of_cross import versine_of_cross
-from phong75.model.twin.reflectance.reflectance_table import reflectance_table
-from phong75.model.twin.reflectance.stepped_weight import stepped_weight
 
 
 def specular_term(
@@ -28,28 +23,13 @@ def specular_term(
 ) -> Ints:  # fmt: skip
     """W(i) cos(s)**n, int64[n], the product of `weight` and `power` (u1.35). Arguments as in
     `shading_unit`."""
-    table = frame.materials
     if given_versine is not None:
         v = given_versine
     elif config.normal_method == "dot_first":
         v = versine_of_cross(unit[1], unit[0], config)
     else:
         v = reflection(unit, config.constant_half_vector or frame.half_vector, config, trace)
-    if config.has_curves:
-        curve = power_words(table.exponent, config) if table.curve is None else table.curve
-        power = reflectance_table(v, material, curve, table.curve_jumps, config, trace)
-    elif config.power_function:
-        n = config.constant_exponent or table.exponent[material]
-        power = specular_power(v, np.broadcast_to(n, v.shape), config, trace)
-    else:
-        power = specular_cosine(v, config, trace)
-    if config.weight_function and config.weight_jumps:
-        weight = stepped_weight(cosine, material, table.weight, table.weight_jumps, config, trace)
-    elif config.weight_function:
-        weight = specular_weight(cosine, material, table.weight, config, trace)
-    else:
-        left = config.constant_weight or table.weight[material, 0]
-        weight = constant_weight(np.broadcast_to(left, v.shape), config)
+    power, weight = specular_factors(v, cosine, material, frame, config, trace)
     return weight * power
 
 

@@ -38,7 +38,8 @@ def light_align(
     by, less = shift(own, first)
     mantissa = align(normal, by, config)
     if trace is not None:
-        trace["light_align.leading_zeros"] = (own,)
+        zero = (normal == 0).all(axis=0)
+        trace["light_align.leading_zeros"] = (own, zero.astype(np.int64))
         trace["light_align.shift"] = (by, less.astype(np.int64))
         trace["light_align.align"] = tuple(mantissa)
     return mantissa, less, first
