@@ -25,6 +25,7 @@ variables_sweep := AREA ROUTE RECORD
 variables_tessellation := RECORD
 variables_stability := RECORD
 variables_adversarial := KEEP RECORD
+variables_prove := CONFIG AGAIN METHODS RECORD
 variables_synth := CONFIG SCENE PRUNE GRADE SEEDS GATES RECORD
 variables_netlist := RECORD
 variables_formal := RECORD
@@ -47,7 +48,7 @@ unknown := $(filter-out $(accepted) PYTHON,$(given))
 ifneq ($(strip $(unknown)),)
 $(error `make $(goals)` has no variable $(firstword $(unknown)); it takes $(or $(strip $(accepted)),none))
 endif
-flags := RECORD KEEP GATES AREA AGAIN
+flags := RECORD KEEP GATES AREA AGAIN METHODS
 wrong := $(foreach v,$(filter $(flags),$(given)),$(if $(filter-out 0 1,$($v))$(word 2,$($v)),$v))
 ifneq ($(strip $(wrong)),)
 $(error $(firstword $(wrong)) is `$($(firstword $(wrong)))`, not 0 or 1)
@@ -81,8 +82,8 @@ all-setup:
 
 # -- commands --------------------------------------------------------------------------------------
 
-.PHONY: run convert compare prune scenes sweep tessellation stability adversarial report synth \
-  netlist formal activity \
+.PHONY: run convert compare prune scenes sweep tessellation stability adversarial prove report \
+  synth netlist formal activity \
   waves bench export configs
 
 run: setup
@@ -115,6 +116,10 @@ stability: setup
 
 adversarial: setup
 	@$(PHONG75) adversarial $(or $(record),$(call flag,--record,KEEP))
+
+prove: setup
+	@$(PHONG75) prove $(config) $(call flag,--again,AGAIN) \
+	  $(call flag,--methods,METHODS) $(record)
 
 report: page-setup
 	@$(PHONG75) report
@@ -217,6 +222,7 @@ help:
 	@echo '  make tessellation  error against true surfaces (part of make sweep)'
 	@echo '  make stability     stiff and extreme cases'
 	@echo '  make adversarial   search for the largest error; KEEP=1 keeps a worse input'
+	@echo '  make prove         certified bounds of the error; CONFIG=NAME AGAIN=1 METHODS=1'
 	@echo '  make bench         speed of simulation and model'
 	@echo 'Hardware:'
 	@echo '  make synth         size and clock on a Lattice ECP5'

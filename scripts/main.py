@@ -284,6 +284,32 @@ def adversarial(
     return engine.main(record)
 
 
+@app.command()
+def prove(
+    config: options.ConfigName = None,
+    again: Annotated[
+        bool,
+        typer.Option("--again", help="Exhaust cos(s)^n, too, though its errors are recorded."),
+    ] = False,
+    methods: Annotated[
+        bool,
+        typer.Option("--methods", help="Certify the other methods with the powers of the default."),
+    ] = False,
+    record: options.Record = False,
+) -> int:
+    """Certify the largest error of a colour, over all inputs.
+
+    1/sqrt and cos(s)^n are exhausted; branch and bound with intervals that are rounded outward
+    covers all normals, directions of the eye, exponents and coefficients. Exit code 1 if a
+    certified bound is more than 1.05 times the worst input that `adversarial` found.
+    """
+    from phong75.scripts import prove as engine
+
+    if methods:
+        return engine.methods(record)
+    return engine.main(options.configuration(None, config), again, record)
+
+
 # -- hardware --------------------------------------------------------------------------------------
 
 

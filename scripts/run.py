@@ -148,6 +148,8 @@ def _front_end(request: RunRequest, folder: Path, steps: Steps) -> Stimulus:
         built = _built(request, frame, config)
         if built.values != config.values and (reasons := pruning.missing(frame, built, config)):
             raise InputError(f"its spans have no place for this scene: {reasons[0]}")
+        if reason := error_budget.refusal(frame, built):
+            raise InputError(reason)
         path = folder / "spans"
         spans.write_spans(path, frame, built)
     return Stimulus(frame, exact, notes, config, built, path, meshes, front)

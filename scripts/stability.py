@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Stiff and extreme cases through RTL, model and reference: `phong75 stability`.
 
-Prints a row a case and the table of errors (derived bound, worst of the bundled scenes, worst
+Prints a row a case and the table of errors (certified bound, worst of the bundled scenes, worst
 input found), and writes both to build/stability/report.json. Exit code: 0, 1 if a row fails, 2.
 """
 
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import time
+from collections.abc import Callable
 
 import numpy as np
 from rich.console import Console, ConsoleOptions, RenderResult
@@ -19,13 +20,14 @@ from phong75.model.analysis.run_report import versions
 from phong75.model.config import DEFAULT as C
 from phong75.model.front.scene import bundled_scenes
 from phong75.model.studies import adversarial, corner_cases
+from phong75.model.studies.methods import CONFIGS, PORTS_OF_DEFAULT
 from phong75.scripts import console, recorded
 from phong75.scripts.console import Steps
 from phong75.sim.design import BUILD
 from phong75.sim.frame import corner_cases as simulated
 
 #: Version of the layout of report.json.
-SCHEMA = 2
+SCHEMA = 3
 OUT = BUILD / "stability"
 MESHES = 100_000
 #: What is recorded of a case.
@@ -76,21 +78,36 @@ def scene_errors(cases, results) -> dict[adversarial.Family, float]:
 def error_rows(
     scenes: dict[adversarial.Family, float], worst: list[simulated.CornerCaseRow]
 ) -> list[dict]:
-    """A row a family: derived bound, worst of the bundled scenes, and the worst input found, as it
-    came out of the RTL."""
+    """A row a family: certified bound (of `phong75 prove`), worst of the bundled scenes, and the
+    worst input found, as it came out of the RTL, with its own derived bound."""
+    certified = {
+        (row["limit"], row["steep"]): row["certified_lsb"]
+        for row in recorded.figures("prove")["families"]
+    }
     found = {(r["limit"], r["steep"]): w for r, w in zip(adversarial.kept(), worst, strict=True)}
     return [
         {
             "family": family.name,
             "limit": family.limit,
             "steep": family.steep,
-            "bound_lsb": family.bound_lsb(),
+            "bound_lsb": certified[family.limit, family.steep],
             "scenes_lsb": scenes[family],
             "adversarial_lsb": found[family.limit, family.steep].max_lsb,
             "adversarial_bound_lsb": found[family.limit, family.steep].bound_lsb,
         }
         for family in adversarial.FAMILIES
     ]
+
+
+def method_rows(done: Callable[[float], None] | None = None) -> list[dict]:
+    """A row for each of PORTS_OF_DEFAULT, see `simulated.method_row`. done: called with the part
+    done. Raises BuildError, SimulationError."""
+    cases, rows = simulated.plain_cases(), []
+    for name in PORTS_OF_DEFAULT:
+        rows.append(simulated.method_row(CONFIGS[name], cases))
+        if done:
+            done(len(rows) / len(PORTS_OF_DEFAULT))
+    return rows
 
 
 class CaseTable:
@@ -136,9 +153,9 @@ def case_table(rows: list[dict]) -> CaseTable:
 
 
 def error_table(rows: list[dict]) -> Table:
-    """Bound, worst of the bundled scenes and worst input found, for each family of inputs."""
+    """Certified bound, worst of the bundled scenes and worst input found, for each family."""
     table = Table(title="largest error in LSB (perfect rounding: ½)", title_style="bold")
-    titles = "inputs", "derived\nbound", "bundled\nscenes", "worst\ninput found", "its\nbound"
+    titles = "inputs", "certified\nbound", "bundled\nscenes", "worst\ninput found", "its own\nbound"
     for title in titles:
         table.add_column(title, justify="left" if title == "inputs" else "right", no_wrap=True)
     for row in rows:
@@ -207,6 +224,8 @@ def run(steps: Steps) -> dict:
     with steps.step("powers") as step:
         powers = adversarial.power_errors(step.done)
         rows.append(power_row(powers))
+    with steps.step("methods") as step:
+        methods = method_rows(step.done)
     with steps.step("long_run"):
         rows.append(simulated.long_run(LONG_RUN))
     with steps.step("large_frame"):
@@ -216,6 +235,7 @@ def run(steps: Steps) -> dict:
         "rows": [row.as_dict() for row in rows],
         "errors": errors,
         "powers": powers,
+        "methods": methods,
         "amm_2012_at_20": adversarial.AMM_2012,
         "versions": versions(),
         "wall_s": {name: round(value, 3) for name, value in steps.wall_s.items()},
@@ -225,7 +245,12 @@ def run(steps: Steps) -> dict:
 def figures(report: dict) -> dict:
     """What is recorded of `report`: the numbers of its rows and errors, no words, no times."""
     rows = [{name: row[name] for name in RECORDED} for row in report["rows"]]
-    return {"rows": rows} | {name: report[name] for name in ("errors", "powers", "amm_2012_at_20")}
+    methods = [
+        {name: value for name, value in row.items() if name != "failures"}
+        for row in report["methods"]
+    ]
+    kept = {name: report[name] for name in ("errors", "powers", "amm_2012_at_20")}
+    return {"rows": rows, "methods": methods} | kept
 
 
 def main(record: bool) -> int:
@@ -241,13 +266,15 @@ def main(record: bool) -> int:
         case_table(report["rows"]), error_table(report["errors"]), power_table(report["powers"])
     )
     failed = [row for row in report["rows"] if row["failures"]]
+    failed += [row | {"case": row["name"]} for row in report["methods"] if row["failures"]]
     if record:
         recorded.record(
             "stability", "make stability", ("verilator", "numpy"), figures(report),
             {"cases": len(report["rows"])}, failed=bool(failed),
         )  # fmt: skip
     console.say(
-        f"{len(report['rows'])} rows, {len(failed)} failed, {time.perf_counter() - begin:.0f} s; "
+        f"{len(report['rows'])} rows, {len(report['methods'])} methods, {len(failed)} failed, "
+        f"{time.perf_counter() - begin:.0f} s; "
         f"{console.shown(OUT)}/report.json"
     )
     for row in failed:

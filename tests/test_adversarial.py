@@ -11,7 +11,7 @@ from phong75.model.analysis import error_budget, reference
 from phong75.model.config import DEFAULT as C
 from phong75.model.front.scene import bundled_scenes
 from phong75.model.spans import illegal_spans
-from phong75.model.studies import adversarial, corner_cases
+from phong75.model.studies import adversarial, aligned, corner_cases
 from phong75.model.studies.adversarial import FAMILIES
 from phong75.scripts import recorded
 from phong75.scripts.stability import (
@@ -23,6 +23,10 @@ from phong75.scripts.stability import (
 from phong75.sim.frame import corner_cases as table
 from tests.records import differences
 
+PROVEN = recorded.figures("prove")["families"]
+CERTIFIED = {
+    family: row["certified_lsb"] for family, row in zip(FAMILIES, PROVEN, strict=True)
+}  # fmt: skip
 QUICK = {"points": 512, "rounds": 60, "examples": 60, "climbs": 1}
 
 
@@ -35,7 +39,7 @@ def test_the_worst_inputs_come_out_of_the_rtl_as_found():
     for row, kept in zip(errors, recorded.figures("stability")["errors"], strict=True):
         assert not differences(row, kept), "the record is old: make stability"
         assert 0.5 < row["adversarial_lsb"] <= row["adversarial_bound_lsb"], row
-        assert row["adversarial_bound_lsb"] <= row["bound_lsb"], row
+        assert row["adversarial_lsb"] <= row["bound_lsb"], row
         assert row["scenes_lsb"] <= row["adversarial_lsb"], "a scene is worse than the search"
 
 
@@ -68,7 +72,21 @@ def test_a_short_search(family):
     """It finds errors beyond rounding, within the bound, and the same ones again."""
     found = adversarial.search(family, **QUICK)
     assert 0.505 < found["error_lsb"] <= error_budget.bound_lsb(adversarial.frame(found))
+    assert found["error_lsb"] <= CERTIFIED[family]
     assert found == adversarial.search(family, **QUICK)
+
+
+@pytest.mark.parametrize("family", [FAMILIES[0], FAMILIES[-1]], ids=lambda f: f.name)
+def test_a_short_search_around_the_place_of_the_largest_bound(family):
+    row = next(r for r in PROVEN if (r["limit"], r["steep"]) == (family.limit, family.steep))
+    place = aligned.place(row["search"]["at"])
+    quick = {"points": 1 << 15, "rounds": 1, "kept": 60, "tries": 64}
+    found = aligned.search(family, place, **quick)
+    least = 0.515 if family.limit == 10 else 0.6
+    assert least < found["error_lsb"] <= CERTIFIED[family]
+    assert found == aligned.search(family, place, **quick)
+    half = np.array(found["half_vector"])
+    assert abs(np.hypot(*half) - C.half_vector.one) <= 5**0.5 / 2
 
 
 def test_the_search_sees_a_bound_that_is_too_low(monkeypatch):
@@ -85,7 +103,7 @@ def test_the_search_sees_a_bound_that_is_too_low(monkeypatch):
 
     monkeypatch.setattr(sys.modules["phong75.model.twin.core.shading_unit"], "reflection", papers)
     found = adversarial.search(FAMILIES[2], **QUICK)
-    assert found["error_lsb"] > FAMILIES[2].bound_lsb()
+    assert found["error_lsb"] > CERTIFIED[FAMILIES[2]]
 
 
 def test_the_power_alone():

@@ -3,7 +3,8 @@
 
 import pytest
 
-from phong75.model.studies import charts
+from phong75.model.studies import charts, methods, tessellation
+from phong75.scripts import recorded
 
 TECHNIQUES = ("phong", "gouraud", "flat", "cubic")
 
@@ -68,7 +69,18 @@ def test_the_legend_says_what_has_no_rtl(figure):
 def test_perfect_rounding_is_drawn_where_codes_are(figure):
     for k, panel in enumerate(figure.get_axes()):
         levels = [line.get_ydata()[0] for line in panel.get_lines() if line.get_linestyle() == ":"]
-        assert levels == ([pytest.approx(12**-0.5)] if k >= 4 else [])
+        shape = ("sphere", "torus")[k % 2]
+        assert levels == ([tessellation.perfect_rms(shape)] if k >= 4 else [])
+        assert all(0.28 < level < 0.30 for level in levels)
+
+
+def test_perfect_rounding_is_that_of_the_frames():
+    """The frames of the sweep have flat parts, so their errors are not spread evenly over 1/2."""
+    found = methods.perfect()
+    assert found["rms_lsb"] == pytest.approx(0.294440, abs=1e-6)
+    assert found["max_lsb"] <= 0.5 and found["correctly_rounded"] == 1
+    figures = recorded.figures("sweep")["configurations"]
+    assert all(found["rms_lsb"] <= of["rms_lsb"] for of in figures.values())
 
 
 def test_files_repeat(rows, tmp_path):

@@ -463,6 +463,12 @@ def test_a_run_of_a_configuration(start, scene, tmp_path, name):
     assert bounded == (name != "not_normalized")
 
 
+def test_spans_that_a_method_cannot_take(start, scene, monkeypatch):
+    reason = "span 7 is not for quadratic_spans"
+    monkeypatch.setattr(run.error_budget, "refusal", lambda frame, config: reason)
+    assert_refused(start(scene, "--config=quadratic_spans_18"), reason)
+
+
 def test_technique_and_config_exclude_each_other(start, scene):
     refused = start(scene, "--technique=flat", "--config=gouraud")
     assert_refused(refused, "--technique and --config both name what to build")
@@ -580,6 +586,7 @@ FORWARDED = {
     "tessellation": ("", "RECORD"),
     "stability": ("", "RECORD"),
     "adversarial": ("", "KEEP RECORD"),
+    "prove": ("CONFIG", "AGAIN METHODS RECORD"),
     "report": ("", ""),
     "synth": ("CONFIG SCENE GRADE SEEDS", "GATES RECORD"),
     "netlist": ("", "RECORD"),

@@ -8,16 +8,19 @@ import numpy as np
 import pytest
 
 from phong75.model import twin
-from phong75.model.analysis import reference
+from phong75.model.analysis import error_budget, reference
 from phong75.model.config import DEFAULT as C
 from phong75.model.front import visibility
 from phong75.model.spans import illegal_spans
 from phong75.model.studies import corner_cases
+from phong75.model.studies.methods import CONFIGS, PORTS_OF_DEFAULT
 from phong75.model.twin.core import phong_unit
+from phong75.scripts import recorded
 from phong75.sim import design
 from phong75.sim.build import Bench
 from phong75.sim.frame import corner_cases as table
 from phong75.sim.frame.run_frame import SimResult
+from tests.records import differences
 
 
 def result(frame, **changes):
@@ -104,6 +107,57 @@ def test_an_error_beyond_the_bound_fails(monkeypatch):
     monkeypatch.setattr(phong_unit, "shade", lambda *a: np.minimum(shade(*a) + 1, 255))
     failures = table.judge(case, [result(case.frame)]).failures
     assert any("the largest error is" in line for line in failures)
+
+
+def perfect_rtl(jobs, config):
+    """What perfect RTL of `config` would give, in place of `simulate_jobs`."""
+    return [replace(result(job.frame), pixels=twin.render(job.frame, config)) for job in jobs]
+
+
+@pytest.mark.parametrize("name", ["quadratic_spans_18", "squaring_18"])
+def test_a_method_on_every_corner_case(monkeypatch, name):
+    monkeypatch.setattr(table, "simulate_jobs", perfect_rtl)
+    row = table.method_row(CONFIGS[name], table.plain_cases())
+    assert row.pop("failures") == []
+    kept = {of["name"]: of for of in recorded.figures("stability")["methods"]}
+    assert tuple(kept) == PORTS_OF_DEFAULT
+    assert not differences(row, kept[name]), "make stability RECORD=1"
+    assert row["cases"] == len(table.plain_cases()) > 40 and row["max_lsb"] <= row["bound_lsb"]
+
+
+def test_every_method_shows_all_corner_cases_as_its_model_does():
+    for of in recorded.figures("stability")["methods"]:
+        assert of["mismatches"] == 0, of["name"]
+        assert of["refused"] == 0 or of["name"].startswith("quadratic_spans")
+        assert of["bound_lsb"] is None or of["max_lsb"] <= of["bound_lsb"]
+
+
+def test_a_method_beyond_its_bound_fails(monkeypatch):
+    case = next(c for c in table.plain_cases() if c.name == "normals of 2⁻²⁰")
+    monkeypatch.setattr(table, "simulate_jobs", perfect_rtl)
+    config = CONFIGS["lines_32"]
+    assert not table.method_row(config, [case])["failures"]
+    render = twin.render
+    monkeypatch.setattr(twin, "render", lambda *a: bright(render(*a)))
+    assert "is beyond" in table.method_row(config, [case])["failures"][0]
+    broken = [replace(got, pixels=bright(got.pixels)) for got in perfect_rtl([case], config)]
+    monkeypatch.setattr(table, "simulate_jobs", lambda *_: broken)
+    assert "RTL and model differ" in table.method_row(config, [case])["failures"][0]
+
+
+def bright(pixels):
+    """`pixels`, each colour two codes brighter."""
+    return twin.Pixels(pixels.x, pixels.y, np.minimum(pixels.rgb + 2, 255), pixels.last)
+
+
+def test_spans_that_quadratic_spans_cannot_take_are_refused():
+    config = CONFIGS["quadratic_spans_18"]
+    said = {case.name: error_budget.refusal(case.frame, config) for case in table.plain_cases()}
+    refused = {name for name, reason in said.items() if reason}
+    assert {"normals of a few units", "slope at full scale", "ends 179.99° apart"} <= refused
+    assert not refused & {"spans of 3", "ends 120° apart", "grazing light, eye at 40°"}
+    assert said["normals of a few units"].startswith("span 0 is not for quadratic_spans: its norm")
+    assert not any(error_budget.refusal(case.frame, C) for case in table.plain_cases())
 
 
 def test_broken_designs_fail_their_cases(tmp_path):

@@ -10,6 +10,18 @@ the components of the cross product of the unit normal and the half vector h, so
 v = 1 - cos(s) = 2 |w|**2. With several lights, 1/|N| is that of the first light's normal N0 for all
 of them; `reach` is the largest |N|/|N0| of a further light over the pixels of a frame, 1 but for
 the rounding at the ports, and None for the first light.
+
+What the derivation leaves out, and how much that is with the default words:
+
+- products of two errors of the normalizer (direction, length, |h| - 1), below 3e-10 of a length: at
+  most 2e-6 LSB of a colour code, where W is steepest;
+- the change of f'' within a segment of a table of lines. Relative to the term of the lines, that of
+  1/sqrt may be larger by sqrt(1 + 2**-8) - 1 = 0.2 %, that of the logarithm by 2**-10/c = 0.2 %: at
+  most 1e-5 LSB each, where W is steepest and for n = 128.
+
+`certificate` leaves out nothing: it exhausts both tables, and bounds the products. Its bounds hold
+for all frames at once and are lower; those of this module are for one frame, and say which stage
+costs what.
 """
 
 from __future__ import annotations
@@ -18,7 +30,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from phong75.model.arrays import ArrayLike, Ints, Reals
+from phong75.model.arrays import ArrayLike, Ints, Reals, Spans
 from phong75.model.config import DEFAULT, Config, Format
 from phong75.model.frame import Frame, with_lights
 from phong75.model.quadratic_spans import MARGIN_BITS
@@ -83,7 +95,8 @@ def inverse_sqrt_linear(config: Config) -> float:
 
     Lines: a chord moved by half its largest error has the error h**2/16 f'', h the length of the
     segment. f''/f = 3/(4 x**2) is largest at the left end of an octave, where
-    h/x = 2**-root_index_bits.
+    h/x = 2**-root_index_bits. (f'' and f are taken at the same end of the segment; f at the other
+    end is smaller by sqrt(1 + h/x).)
     Words, relative to the smallest root, 1/2: half a unit of the value; half a unit of the slope
     and the truncated product (slopes are 8 times finer than values); the final rounding or, at 1,
     the clamp by one LSB.
@@ -201,19 +214,19 @@ def reaches(frame: Frame) -> list[float]:
     return found
 
 
-def squares(frame: Frame, config: Config) -> float | None:
-    """Relative error of the interpolated squares of `quadratic_spans`, over all spans of `frame`.
+def squares_of_spans(spans: Spans, config: Config) -> Reals:
+    """Relative error of the interpolated squares of `quadratic_spans`, float64[n], at the pixel of
+    each of `spans` where it is largest; infinite where there is no bound.
 
     A square is computed from three words, each rounded by at most half an LSB. After k steps the
     error is at most 1 + k + k (k - 1)/2 half LSBs. The bound of a span is this error at the last
     pixel, relative to the smallest |N|**2 of the span.
-    Returns None if there is no bound: |N|**2 may leave its word (it is convex along the span, so
-    its maximum is at an end), or the error may exceed the margin that keeps the cross square below
-    |N|**2 (`MARGIN_BITS`).
+    There is no bound if |N|**2 may leave its word (it is convex along the span, so its maximum is
+    at an end), or the error may exceed the margin that keeps the cross square below |N|**2
+    (`MARGIN_BITS`).
     """
-    spans = frame.spans[frame.spans["length"] > 0]
     start, step = (config.normal.real(spans[name]) for name in ("start", "step"))
-    last = spans["length"].astype(float) - 1
+    last = np.maximum(spans["length"].astype(float) - 1, 0)
     bend = (step**2).sum(axis=1)
     nearest = np.clip(-(start * step).sum(axis=1) / np.where(bend > 0, bend, 1), 0, last)
 
@@ -221,10 +234,30 @@ def squares(frame: Frame, config: Config) -> float | None:
         return ((start + k[:, None] * step) ** 2).sum(axis=1)
 
     error = (1 + last + last * (last - 1) / 2) * config.squared.lsb / 2
-    if (np.maximum(square(0 * last), square(last)) + error >= 1 << config.squared.integer).any():
-        return None
-    worst = float(np.max(error / np.maximum(square(nearest), config.squared.lsb), initial=0.0))
-    return worst if 2 * worst <= 2.0**-MARGIN_BITS else None
+    relative = error / np.maximum(square(nearest), config.squared.lsb)
+    fits = np.maximum(square(0 * last), square(last)) + error < 1 << config.squared.integer
+    bounded: Reals = np.where(fits & (2 * relative <= 2.0**-MARGIN_BITS), relative, np.inf)
+    return bounded
+
+
+def squares(frame: Frame, config: Config) -> float | None:
+    """The largest of `squares_of_spans` over `frame`; None if a span has no bound."""
+    spans = frame.spans[frame.spans["length"] > 0]
+    worst = float(np.max(squares_of_spans(spans, config), initial=0.0))
+    return worst if worst < np.inf else None
+
+
+def refusal(frame: Frame, config: Config) -> str:
+    """Why `config` must not shade `frame`: its method has no bound for a span of it; else ""."""
+    if not config.spans_carry_squares:
+        return ""
+    wrong = np.isinf(squares_of_spans(frame.spans, config)) & (frame.spans["length"] > 0)
+    if not wrong.any():
+        return ""
+    return (
+        f"span {int(np.argmax(wrong))} is not for quadratic_spans: its normal gets 2 or longer, or "
+        f"so short that the rounding of its squares exceeds 2^-{MARGIN_BITS + 1} of |N|^2"
+    )
 
 
 def root_of_square(square: float, config: Config) -> float:
@@ -348,8 +381,8 @@ def specular_power_tables(n: float, config: Config) -> float:
 
     With x = n * -log2(cos s), an error dx changes the power by at most 2**-x ln 2 dx. The terms:
 
-    - logarithm: chords (not moved, because the first one must not go below 0), half a unit of value
-      and of slope, the truncated product;
+    - logarithm: chords (not moved, because the first one must not go below 0) with f'' at the
+      operand, half a unit of value and of slope, the truncated product;
     - mantissa of the logarithm: truncated to `log_mantissa_bits`, a relative error of x, and
       x 2**-x ln 2 is at most 1/e;
     - x: truncated; the table of 2**-f is centred on the truncation, which halves this error;

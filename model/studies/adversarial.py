@@ -10,7 +10,8 @@ rounding itself, up to 1/2 LSB. The search has three steps:
 3. Every small value of Cp d is tried for the best points. Cp d shifts S without adding an error, so
    that S falls just on the wrong side of a half and the final rounding adds its 1/2 LSB.
 
-model/data/adversarial.json holds the worst input of each family, in integers.
+`aligned` searches around one place instead. model/data/adversarial.json holds the worst input of
+each family, in integers.
 """
 
 from __future__ import annotations
@@ -26,7 +27,9 @@ import numpy as np
 from phong75.model.analysis import error_budget, reference
 from phong75.model.arrays import Ints, Reals, Trace
 from phong75.model.config import DEFAULT as C
-from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
+from phong75.model.config import Config
+from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable
+from phong75.model.twin.core.normalizer import leading_zeros
 from phong75.model.twin.core.phong_unit import shade
 from phong75.model.twin.core.specular_power_tables import specular_power_tables
 
@@ -62,22 +65,6 @@ class Family:
         """The name that tables show."""
         return f"n ≤ {self.limit}, {'any W' if self.steep else 'W constant'}"
 
-    def bound_lsb(self) -> float:
-        """The largest derived error bound of the family, LSB, over eye angles and exponents."""
-        points = np.arange(C.weight_points) % 2 if self.steep else np.ones(C.weight_points)
-        n = [n for n in (1, 1.5, 2, 3, 5, 10, 20, 32, 64, 128) if n <= self.limit]
-        worst = 0.0
-        for exponent in n:
-            table = MaterialTable.empty(C)
-            table.set(0, (1, 1, 1), 0, points, exponent, C)
-            for angle in np.linspace(0, np.pi, 33):
-                h = half_vector_codes(np.array([np.sin(angle), 0, np.cos(angle)]), C)
-                frame = Frame(1, 1, h, False, (0, 0, 0), table, np.zeros(1, SPAN_DTYPE))
-                bound = error_budget.bound_lsb(frame)
-                assert bound is not None  # only `quadratic_spans` may have none
-                worst = max(worst, bound)
-        return worst
-
 
 FAMILIES = tuple(Family(limit, steep) for steep in (False, True) for limit in LIMITS)
 
@@ -112,8 +99,10 @@ def _points(inputs: Inputs) -> np.ndarray:
     return np.where(right, inputs.weight[1][:, None], inputs.weight[0][:, None])
 
 
-def evaluate(inputs: Inputs) -> tuple[Ints, Reals, Reals]:
-    """Shade all points with the twin and in float64, one channel.
+def evaluate(inputs: Inputs, config: Config = C) -> tuple[Ints, Reals, Reals]:
+    """Shade all points with the twin of `config` and in float64, one channel.
+
+    config: has the words of the default at its ports.
 
     Returns (codes int[n], 255 S of the twin before the final rounding, exact 255 S), float64[n].
     """
@@ -129,9 +118,9 @@ def evaluate(inputs: Inputs) -> tuple[Ints, Reals, Reals]:
     half_vector: Any = inputs.half_vector
     frame = Frame(1, 1, half_vector, False, (0, 0, 0), table, np.zeros(0, SPAN_DTYPE))
     trace: Trace = {}
-    codes = shade(inputs.normal, material, frame, C, trace)[0]
+    codes = shade(inputs.normal, material, frame, config, trace)[0]
     white = (1 << C.colour_bits) - 1
-    unrounded = white * C.intensity.real(trace["colour_channel.intensity"][0])
+    unrounded = white * config.intensity.real(trace["colour_channel.intensity"][0])
     real = C.coefficient.real
     exact = reference.shade(
         inputs.normal.T.astype(float), real(table.ambient), real(table.diffuse), real(points),
@@ -140,7 +129,7 @@ def evaluate(inputs: Inputs) -> tuple[Ints, Reals, Reals]:
     return codes, unrounded, exact
 
 
-def _objective(inputs: Inputs) -> np.ndarray:
+def unrounded_error(inputs: Inputs) -> np.ndarray:
     """The error of 255 S in LSB, float64[n]; 0 for points that step 3 could saturate at S = 1."""
     _, unrounded, exact = evaluate(inputs)
     return np.where(exact < 252, np.abs(unrounded - exact), 0)
@@ -184,6 +173,8 @@ def _step(
     one = C.exponent.one
     exponent = perturb(inputs.exponent, one, family.limit * one)
     exponent = np.where(rng.random(count) < 0.1, family.limit * one, exponent)
+    normal = perturb(inputs.normal, C.normal.min, C.normal.max)
+    normal = np.where(rng.random(count) < 0.5, _on_grid(inputs.normal, normal, rng), normal)
     weight = perturb(inputs.weight, 0, ONE)
     ends = rng.integers(0, 2, weight.shape) * ONE
     weight = np.where(rng.random(weight.shape) < 0.1, ends, weight)
@@ -191,9 +182,20 @@ def _step(
         weight[1] = weight[0]
     half_vector = C.half_vector.quantize([np.sin(angle / 2), np.cos(angle / 2)])
     return Inputs(
-        perturb(inputs.normal, C.normal.min, C.normal.max), half_vector, exponent, inputs.ambient,
+        normal, half_vector, exponent, inputs.ambient,
         perturb(inputs.diffuse, 0, ONE - AMBIENT), weight,
     ), angle  # fmt: skip
+
+
+def _on_grid(before: Ints, after: Ints, rng: np.random.Generator) -> Ints:
+    """Normals int64[3, n] near `after` whose mantissas are rounded as those of `before`, or by
+    nearly half a unit: what is found about that rounding survives a step of the direction."""
+    drop = np.maximum(C.normal.bits - C.mantissa.bits - leading_zeros(before, C), 0)
+    unit, half = np.int64(1) << drop, np.int64(1) << np.maximum(drop - 1, 0)
+    rest = (before + half) % unit - half
+    ends = np.where(rng.random(before.shape) < 0.5, half - 1, -half)
+    rest = np.where(rng.random(before.shape) < 0.1, np.where(drop > 1, ends, rest), rest)
+    return np.clip((after + half) // unit * unit + rest, C.normal.min, C.normal.max)
 
 
 def _climb(
@@ -209,11 +211,11 @@ def _climb(
     Every 50 rounds copies of the better half replace the worse half. Returns the points, sorted by
     falling error.
     """
-    best = _objective(inputs)
+    best = unrounded_error(inputs)
     count = len(angle)
     for k in range(rounds):
         neighbours, neighbour_angle = _step(family, inputs, angle, rng)
-        objective = _objective(neighbours)
+        objective = unrounded_error(neighbours)
         better = objective > best
         best = np.where(better, objective, best)
         angle = np.where(better, neighbour_angle, angle)
@@ -254,7 +256,7 @@ def _explore(family: Family, examples: int) -> list[dict]:
             "normal": normal, "angle": angle, "exponent": exponent, "diffuse": diffuse,
             "weight": weight if family.steep else weight[:1] * 2,
         }  # fmt: skip
-        objective = float(_objective(_gathered([point])[0])[0])
+        objective = float(unrounded_error(_gathered([point])[0])[0])
         scored.append((objective, point))
         target(objective)
 
@@ -300,19 +302,19 @@ def search(
             if progress:
                 progress((climb + part) / climbs)
 
-        rows.append(_worst(family, _climb(family, inputs, angle, rounds, rng, done)))
+        rows.append(worst(family, _climb(family, inputs, angle, rounds, rng, done)))
     return max(rows, key=lambda row: row["error_lsb"])
 
 
-def _worst(family: Family, inputs: Inputs) -> dict:
+def worst(family: Family, inputs: Inputs) -> dict:
     """The worst of the first 256 of `inputs` after every Cp d up to AMBIENT has been tried."""
     inputs = inputs.take(slice(0, 256))
     count, ambient = inputs.normal.shape[1], np.arange(AMBIENT + 1)
     inputs = inputs.take(np.repeat(np.arange(count), len(ambient)))
     inputs = replace(inputs, ambient=np.tile(ambient, count))
     codes, _, exact = evaluate(inputs)
-    worst = int(np.argmax(np.abs(codes - exact)))
-    one = inputs.take([worst])
+    at = int(np.argmax(np.abs(codes - exact)))
+    one = inputs.take([at])
     return {
         "limit": family.limit,
         "steep": family.steep,
@@ -322,7 +324,7 @@ def _worst(family: Family, inputs: Inputs) -> dict:
         "ambient": int(one.ambient[0]),
         "diffuse": int(one.diffuse[0]),
         "weight": _points(one)[0].tolist(),
-        "error_lsb": float(np.abs(codes - exact)[worst]),
+        "error_lsb": float(np.abs(codes - exact)[at]),
     }
 
 

@@ -16,13 +16,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from phong75.model.studies import pareto
-
-#: RMS error of perfect rounding to codes.
+from phong75.model.studies import methods, pareto, tessellation
 from phong75.model.studies.tessellation import SIZE
-
-#: RMS error of perfect rounding to codes, in LSB: that of an error spread evenly over ±1/2.
-PERFECT_RMS = 12**-0.5
 
 #: Colours that remain distinct with colour blindness (Okabe and Ito, 2008).
 _CURVES = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
@@ -108,9 +103,10 @@ def _figure(
                 if i == len(errors) - 1:
                     axes.set_xlabel(name)
                 if i == 0:
-                    axes.axhline(PERFECT_RMS, color="gray", linewidth=0.8, linestyle=":")
+                    perfect = methods.perfect()["rms_lsb"]
+                    axes.axhline(perfect, color="gray", linewidth=0.8, linestyle=":")
                     axes.annotate(
-                        "perfect rounding", (1, PERFECT_RMS), xytext=(-2, 2), ha="right",
+                        "perfect rounding", (1, perfect), xytext=(-2, 2), ha="right",
                         textcoords="offset points", fontsize=6, color="gray",
                         xycoords=("axes fraction", "data"),
                     )  # fmt: skip
@@ -199,9 +195,10 @@ def tessellation_chart(rows: list[dict], path: Path) -> None:
                 axes.xaxis.set_major_formatter(matplotlib.ticker.StrMethodFormatter("{x:g}"))
                 axes.set_title(name, loc="left", fontsize=8)
                 if line == len(lines) - 1:
-                    axes.axhline(PERFECT_RMS, color="gray", linewidth=0.8, linestyle=":")
+                    perfect = tessellation.perfect_rms(shape)
+                    axes.axhline(perfect, color="gray", linewidth=0.8, linestyle=":")
                     axes.annotate(
-                        "perfect rounding", (0, PERFECT_RMS), xytext=(2, 2),
+                        "perfect rounding", (0, perfect), xytext=(2, 2),
                         textcoords="offset points", fontsize=6, color="gray",
                         xycoords=("axes fraction", "data"),
                     )  # fmt: skip

@@ -10,10 +10,16 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from phong75.model.analysis import metrics, reference
 from phong75.model.config import DEFAULT, Config, Format
+from phong75.model.front.scene import load_scene
+from phong75.model.scene_to_frame import front_end
 
 #: Width of the operands of a multiplier of the FPGA, bits.
 MULTIPLIER_BITS = 18
@@ -215,6 +221,23 @@ def points() -> list[Point]:
         ]  # fmt: skip
     return out
 
+
+@lru_cache
+def perfect() -> dict[str, Any]:
+    """The errors (see `metrics.error_metrics`) of perfect rounding on FRAMES: of the nearest codes
+    to the shading of the scenes before any rounding, LSB."""
+    fronts = [front_end(load_scene(name, size)) for name, size, _ in FRAMES]
+    exact = np.concatenate([reference.render_exact(f.frame, f.exact) for f in fronts])
+    return metrics.error_metrics(np.floor(exact + 0.5), exact)
+
+
+#: A configuration of each method with the words of the default at its ports: they run all corner
+#: cases.
+PORTS_OF_DEFAULT = (
+    "default", "quadratic_spans_18", "dot_first_18", "table_2048", "lines_32", "parabolas_8",
+    "table_128_newton", "fast_inverse_1", "fast_inverse_2", "not_normalized", "power_tables_32",
+    "squaring_18", "schlick_18",
+)  # fmt: skip
 
 #: {name: configuration} of the sweep.
 CONFIGS = {point.config.name: point.config for point in points()}

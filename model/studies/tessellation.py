@@ -286,6 +286,14 @@ def errors(
     }
 
 
+@lru_cache
+def perfect_rms(name: str, size: tuple[int, int] = SIZE) -> float:
+    """RMS error of perfect rounding on the true surface `name`: of the nearest codes, LSB."""
+    true = truth(name, size)
+    value = true.value[true.covered]
+    return float(np.sqrt(np.mean((np.floor(value + 0.5) - value) ** 2)))
+
+
 def distance(a: Picture, b: Picture) -> float:
     """RMS difference of two pictures of the same mesh, LSB."""
     first, second = np.argsort(a.pixel), np.argsort(b.pixel)

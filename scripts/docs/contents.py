@@ -36,6 +36,19 @@ def _clocks() -> dict[str, dict[str, Any]]:
     return _record("clocks")["configurations"]
 
 
+def _certified(limit: int, steep: bool) -> float:
+    """The certified bound in LSB for n up to `limit`; steep: for any W(i), not for a constant W."""
+    rows = _record("prove")["families"]
+    return next(
+        row["certified_lsb"] for row in rows if (row["limit"], row["steep"]) == (limit, steep)
+    )
+
+
+def _certified_ratio() -> float:
+    """The largest ratio of a certified bound to the worst input found."""
+    return max(row["certified_lsb"] / row["reached_lsb"] for row in _record("prove")["families"])
+
+
 def _power_error(n: float) -> float:
     return next(row["max_error"] for row in _record("stability")["powers"] if row["n"] == n)
 
@@ -119,7 +132,7 @@ def summary() -> str:
          f"{len(runs) // len(scenes['scenes'])} sizes)", "[results](docs/results.md)"),
         ("largest error against float64 at the same ports, and its derived bound",
          f"{tables.worst_scene(scenes, 'max_lsb'):.3f} LSB, "
-         f"{tables.worst_scene(scenes, 'bound_lsb'):.3f} LSB (perfect rounding: 0.5)",
+         f"{tables.above(tables.worst_scene(scenes, 'bound_lsb'), 3)} LSB (perfect rounding: 0.5)",
          "[error budget](docs/architecture.md#error-budget)"),
         ("throughput, latency",
          f"one pixel per cycle, {facts.latency('first_pixel')} cycles from a span to its first "
@@ -180,6 +193,8 @@ TABLES: dict[str, Callable[[], str]] = {
     "surfaces": lambda: tables.surfaces(_record("tessellation")),
     "quadratic-normals": lambda: tables.quadratic_normals(_record("tessellation")),
     "error-families": lambda: tables.error_families(_record("stability")["errors"]),
+    "method-cases": lambda: tables.method_cases(_record("stability")["methods"]),
+    "certified": lambda: tables.certified(_record("prove")["families"]),
     "cases": lambda: tables.cases(_record("stability")["rows"], facts.case_words()),
     "powers": lambda: tables.powers(_record("stability")["powers"]),
     "pruning": lambda: tables.pruning(_record("prune")["builds"]),
@@ -215,13 +230,17 @@ FIGURES: dict[str, Callable[[], str]] = {
     "latency.first-pixel": lambda: str(facts.latency("first_pixel")),
     "latency.first-pixel-gouraud": lambda: str(facts.latency("first_pixel", TECHNIQUES["gouraud"])),
     "multipliers": lambda: str(facts.modules()["multiplier"]),
-    "bound.n32": lambda: facts.above(facts.bound(32)),
-    "bound.n128": lambda: facts.above(facts.bound(128)),
-    "bound.intensity": lambda: facts.above(facts.intensity_bound(), 4),
-    "bound.jump": lambda: facts.above(facts.jump()),
+    "bound.n32": lambda: tables.above(_certified(32, steep=True)),
+    "bound.n128": lambda: tables.above(_certified(128, steep=True)),
+    "bound.constant-n32": lambda: tables.above(_certified(32, steep=False)),
+    "bound.constant-n128": lambda: tables.above(_certified(128, steep=False)),
+    "prove.pairs": lambda: f"{sum(row['pairs'] for row in _record('prove')['power']) / 1e9:.0f}",
+    "bound.ratio": lambda: tables.above(_certified_ratio(), 3),
+    "bound.intensity": lambda: tables.above(facts.intensity_bound(), 4),
+    "bound.jump": lambda: tables.above(facts.jump()),
     "bound.mantissa": facts.mantissa_error,
-    "bound.eight-lights": lambda: facts.above(_case("eight lights, n = 128", "bound_lsb")),
-    "lights.error": lambda: facts.above(_lights_error()),
+    "bound.eight-lights": lambda: tables.above(_case("eight lights, n = 128", "bound_lsb")),
+    "lights.error": lambda: tables.above(_lights_error()),
     "span.half-vector": lambda: str(2 * DEFAULT.half_vector.bits),
     "span.distance": lambda: str(2 * DEFAULT.depth.bits),
     "curve.one-sided": lambda: f"{facts.one_sided_distance(0.5):.1f}",

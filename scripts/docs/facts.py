@@ -10,7 +10,6 @@ from __future__ import annotations
 import dataclasses
 import functools
 import inspect
-import math
 import re
 from pathlib import Path
 
@@ -28,7 +27,7 @@ from phong75.model.front.scene import SHAPES
 from phong75.model.reflectance import Power, curve_distance, curve_words
 from phong75.model.studies import corner_cases, light_places
 from phong75.model.studies.methods import points
-from phong75.scripts.docs.tables import markdown
+from phong75.scripts.docs.tables import above_digits, markdown
 from phong75.scripts.export import documents
 from phong75.sim.elaborate import instances
 from phong75.sim.formal.proofs import PROOFS
@@ -198,17 +197,11 @@ def _frame(angle: float, n: float, weight=1.0) -> Frame:
     return Frame(1, 1, half_vector_codes(eye, C), False, (0, 0, 0), table, np.zeros(1, SPAN_DTYPE))
 
 
-@functools.cache
-def bound(n: float) -> float:
-    """The derived bound in LSB for exponents up to `n` and W constant, over all angles."""
-    return max(error_budget.bound_lsb(_frame(a, n)) for a in np.linspace(0, np.pi, 33))
-
-
-@functools.cache
 def jump(n: float = 32) -> float:
-    """What a jump of W from 0 to 1 adds to the bound, LSB."""
-    weight = np.where(np.arange(C.weight_points) < C.weight_points // 2, 0.0, 1.0)
-    return error_budget.bound_lsb(_frame(0.5, n, weight)) - bound(n)
+    """What a jump of W from 0 to 1 adds to the bound of a scene, LSB."""
+    step = np.where(np.arange(C.weight_points) < C.weight_points // 2, 0.0, 1.0)
+    jumping, even = (error_budget.bound_lsb(_frame(0.5, n, weight)) for weight in (step, 1.0))
+    return jumping - even
 
 
 def intensity_bound() -> float:
@@ -216,15 +209,10 @@ def intensity_bound() -> float:
     return error_budget.bound_lsb(_frame(0.5, 1), TECHNIQUES["gouraud"])
 
 
-def above(value: float, digits: int = 2) -> str:
-    """`value` rounded up: a bound stays one."""
-    return f"{math.ceil(value * 10**digits) / 10**digits:.{digits}f}"
-
-
 def budget() -> str:
     """The error budget of a white material with n = 10 and W = 1, stage by stage."""
     rows = error_budget.rows(0, _frame(1.0, 10.0))
-    cells = ((row.stage, f"{row.bound:.3g}", row.why.replace("|", "\\|")) for row in rows)
+    cells = ((row.stage, above_digits(row.bound, 3), row.why.replace("|", "\\|")) for row in rows)
     return markdown(("stage", "bound", "why"), ((a, b, c) for a, b, c in cells), left=3)
 
 

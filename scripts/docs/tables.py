@@ -7,6 +7,7 @@ not measured is a dash.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -28,6 +29,17 @@ def markdown(header: Sequence[str], rows: Iterable[Sequence[str]], left: int = 1
 def number(value: float | None, digits: int = 0) -> str:
     """`value` with `digits` decimals, or a dash."""
     return DASH if value is None else f"{value:.{digits}f}"
+
+
+def above(value: float, digits: int = 2) -> str:
+    """`value` rounded up: a bound stays one."""
+    return f"{math.ceil(value * 10**digits) / 10**digits:.{digits}f}"
+
+
+def above_digits(value: float, digits: int) -> str:
+    """A positive `value` rounded up to `digits` significant digits."""
+    step = 10.0 ** (math.floor(math.log10(value)) - digits + 1)
+    return f"{math.ceil(value / step) * step:.{digits}g}"
 
 
 def grouped(value: int) -> str:
@@ -54,7 +66,7 @@ def scenes(record: dict[str, Any]) -> str:
             name, str(large["pixels"]), str(large["spans"]),
             str(sum(run["mismatches"] for run in runs)),
             number(max(run["max_lsb"] for run in runs), 3),
-            number(max(run["bound_lsb"] for run in runs), 3),
+            above(max(run["bound_lsb"] for run in runs), 3),
             f"{100 * min(run['correctly_rounded'] for run in runs):.2f} %",
             number(large["cycles"] / large["pixels"], 4),
             ", ".join(number(record["clock_hz"] / run["cycles"]) for run in runs),
@@ -356,19 +368,31 @@ def reflectance(builds: dict[str, Any], default: dict[str, Any]) -> str:
     return markdown(("build", *_BUILD, "clock, MHz"), rows)
 
 
+def _prove(found: dict[str, Any]) -> list[tuple[str, str, str]]:
+    families, pairs = found["families"], sum(row["pairs"] for row in found["power"])
+    boxes = sum(of["search"]["boxes"] for of in families)
+    return [(
+        "bounds of the error of a colour, certified over all inputs by branch and bound",
+        f"{len(families)} families of inputs, {grouped(boxes)} boxes; "
+        f"{grouped(pairs)} pairs of the power exhausted",
+        "the default method; the derivation behind the intervals is checked by tests, not by a "
+        "proof assistant",
+    )]  # fmt: skip
+
+
 #: The records of the table of long runs, in its order, and what makes lines of each.
 LONG_RUNS: dict[str, Callable[[dict[str, Any]], list[tuple[str, str, str]]]] = {
     "synth-grade6": _synthesis, "synth-grade8": _synthesis, "synth-more": _more_synthesis,
     "netlist": _netlist,
     "icarus": _icarus, "formal": _formal, "coverage": _coverage, "mutate": _mutants,
-    "prune-random": _random_scenes, "mesh-fuzz": _mesh_fuzz, "activity": _activity,
+    "prove": _prove, "prune-random": _random_scenes, "mesh-fuzz": _mesh_fuzz, "activity": _activity,
     "bench": _benchmark, "mesh-large": _mesh_large,
 }  # fmt: skip
 
 
 #: Which of them docs/ shows where.
 HARDWARE = ("synth-grade6", "synth-grade8", "synth-more", "activity")
-TESTS = ("netlist", "icarus", "formal", "coverage", "mutate", "prune-random", "mesh-fuzz")
+TESTS = ("netlist", "icarus", "formal", "prove", "coverage", "mutate", "prune-random", "mesh-fuzz")
 SPEED = ("bench", "mesh-large")
 
 
@@ -432,7 +456,7 @@ def sweep(configurations: dict[str, dict[str, Any]]) -> str:
             number(of.get(key)), str(of["latency_cycles"]),
             f"{number(of['clock_mhz'])}{stated}", number(of["frame_us"]),
             number(of["rms_lsb"], 3), number(of["max_lsb"], 2),
-            "none derived" if of["bound_lsb"] is None else number(of["bound_lsb"], 2),
+            "none derived" if of["bound_lsb"] is None else above(of["bound_lsb"], 2),
             f"{100 * of['correctly_rounded']:.2f} %",
         ))  # fmt: skip
     header = (
@@ -591,10 +615,27 @@ def comparison(report: dict[str, Any]) -> str:
 
 
 def error_families(rows: Iterable[dict[str, Any]]) -> str:
-    """The largest errors: derived, of the bundled scenes, and of the worst input found."""
-    names = ("bound_lsb", "scenes_lsb", "adversarial_lsb")
-    cells = ((row["family"], *(number(row[name], 3) for name in names)) for row in rows)
-    header = ("inputs", "derived bound, LSB", "bundled scenes, LSB", "worst input found, LSB")
+    """The largest errors: of the bundled scenes, and of the worst input found, with its bound."""
+    names = ("scenes_lsb", "adversarial_lsb")
+    cells = (
+        (row["family"], *(number(row[name], 3) for name in names),
+         above(row["adversarial_bound_lsb"], 3))
+        for row in rows
+    )  # fmt: skip
+    header = (
+        "inputs", "bundled scenes, LSB", "worst input found, LSB", "its own derived bound, LSB"
+    )  # fmt: skip
+    return markdown(header, cells)
+
+
+def certified(rows: Iterable[dict[str, Any]]) -> str:
+    """Worst inputs found beside certified bounds, which are rounded up."""
+    cells = (
+        (row["family"], f"{number(row['reached_lsb'], 4)} ≤ {above(row['certified_lsb'], 4)}",
+         above(row["certified_lsb"] / row["reached_lsb"], 3), grouped(row["boxes"]))
+        for row in rows
+    )  # fmt: skip
+    header = ("inputs", "worst input found ≤ certified bound, LSB", "ratio", "boxes")
     return markdown(header, cells)
 
 
@@ -603,7 +644,8 @@ def cases(rows: Iterable[dict[str, Any]], words: dict[str, tuple[str, str]]) -> 
     cells = (
         (row["case"], *words.get(row["case"], ("", "")),
          DASH if row["pixels"] is None else grouped(row["pixels"]),
-         number(row["max_lsb"], 3), number(row["bound_lsb"], 3),
+         number(row["max_lsb"], 3),
+         DASH if row["bound_lsb"] is None else above(row["bound_lsb"], 3),
          DASH if row["mismatches"] is None else str(row["mismatches"]), row["verdict"])
         for row in rows
     )  # fmt: skip
@@ -614,9 +656,28 @@ def cases(rows: Iterable[dict[str, Any]], words: dict[str, tuple[str, str]]) -> 
     return markdown(header, ([cell.replace("|", "\\|") for cell in row] for row in cells), left=3)
 
 
+def method_cases(rows: Iterable[dict[str, Any]]) -> str:
+    """The corner cases by every method: how many it takes, and its largest error."""
+    cells = (
+        (f"`{row['name']}`", str(row["cases"] - row["refused"]), str(row["refused"] or DASH),
+         number(row["max_lsb"], 2) if row["bound_lsb"] else DASH,
+         above(row["bound_lsb"]) if row["bound_lsb"] else DASH,
+         f"{row['unbounded']}: {number(row['unbounded_lsb'], 1)}" if row["unbounded"] else DASH,
+         str(row["mismatches"]))
+        for row in rows
+    )  # fmt: skip
+    header = (
+        "configuration", "cases", "refused", "largest error, LSB", "bound, LSB",
+        "without a bound, LSB", "RTL ≠ model",
+    )  # fmt: skip
+    return markdown(header, cells)
+
+
 def powers(rows: Iterable[dict[str, Any]]) -> str:
     """The error of cos(s)^n alone."""
-    cells = ((f"{row['n']:g}", f"{row['max_error']:.2g}", f"{row['bound']:.2g}") for row in rows)
+    cells = (
+        (f"{row['n']:g}", f"{row['max_error']:.2g}", above_digits(row["bound"], 2)) for row in rows
+    )
     return markdown(("n", "largest error", "derived bound"), cells, left=0)
 
 

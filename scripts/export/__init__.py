@@ -17,7 +17,7 @@ import shutil
 from pathlib import Path
 
 import phong75
-from phong75.model.analysis import pruning
+from phong75.model.analysis import error_budget, pruning
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import Frame, InputError, with_lights
 from phong75.model.front.scene import WHITE, Material, Scene, load_scene
@@ -131,6 +131,8 @@ def _frame(scene: str | None, size: tuple[int, int] | None, config: Config) -> F
     frame = front_end(loaded, config).frame
     if not len(frame.spans):
         raise InputError(f"{scene}: the picture shows nothing, so that there is no stimulus")
+    if reason := error_budget.refusal(frame, config):
+        raise InputError(reason)
     return frame
 
 

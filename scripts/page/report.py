@@ -95,9 +95,6 @@ CODE_ERRORS = {
 SURFACE_ERRORS = UNROUNDED_ERRORS | CODE_ERRORS
 SIZES = {"triangles": "triangles", "cycles": "cycles a frame", "spans": "spans"}
 
-#: Errors of perfect rounding, where there is one figure for it.
-PERFECT = {"rms_lsb": 12**-0.5, "max_lsb": 0.5, "mean_lsb": 0.25}
-
 #: What must be there of the sweep's tables.
 PRECISION = ("method", "label", "cycles", "frame_us", "clock_mhz", "clock_source", "max_lsb",
              "rms_lsb", "p999_lsb", "mean_lsb", "correctly_rounded", "psnr_db")  # fmt: skip
@@ -465,7 +462,8 @@ def precision_plots(rows: list[dict]) -> dict[str, dict]:
                     )  # fmt: skip
             plots[f"{cost}/{error}"] = figure(
                 traces, xaxis=_axis(cost_title, True), yaxis=_axis(error_title, True),
-                hovermode="closest", **_level("perfect rounding", PERFECT.get(error), log=True),
+                hovermode="closest",
+                **_level("perfect rounding", methods.perfect().get(error), log=True),
             )  # fmt: skip
     return plots
 
@@ -500,7 +498,7 @@ def tessellation_plots(rows: list[dict]) -> dict[str, dict]:
                 )
             )  # fmt: skip
         if traces:
-            perfect = PERFECT.get(error) if error in CODE_ERRORS else None
+            perfect = tessellation.perfect_rms(shape) if error == "rms_lsb" else None
             plots[f"{shape}/{size}/{error}"] = figure(
                 traces, xaxis=_axis(SIZES[size], True), yaxis=_axis(SURFACE_ERRORS[error], True),
                 **_level("perfect rounding", perfect, log=True),
@@ -522,7 +520,7 @@ def _surface_hover(row: dict) -> str:
 def error_plot(rows: list[dict]) -> dict:
     """Bound, worst input found and bundled scenes, each beyond ½, for each family of inputs."""
     kinds = (
-        ("bound_lsb", "derived bound"), ("adversarial_lsb", "worst input found"),
+        ("bound_lsb", "certified bound"), ("adversarial_lsb", "worst input found"),
         ("scenes_lsb", "bundled scenes"),
     )  # fmt: skip
     traces = [

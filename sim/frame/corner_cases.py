@@ -11,7 +11,7 @@ import numpy as np
 from phong75.model import twin
 from phong75.model.analysis import error_budget, metrics
 from phong75.model.config import DEFAULT, Config
-from phong75.model.frame import Frame
+from phong75.model.frame import Frame, fitted
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
 from phong75.model.spans import illegal_spans
@@ -112,6 +112,50 @@ def run_cases(
     ]
     return [judge(c, list(results), config) for c, results in zip(cases, zip(*runs, strict=True),
                                                           strict=True)]  # fmt: skip
+
+
+def plain_cases() -> list[CornerCase]:
+    """The corner cases that any method can show: one light, powers of cos(s), linear normals."""
+    return [
+        case for case in corner_cases.cases()
+        if fitted(DEFAULT, case.frame) == DEFAULT and not case.frame.spans["bend"].any()
+    ]  # fmt: skip
+
+
+def method_row(config: Config, cases: list[CornerCase]) -> dict:
+    """`cases` through the RTL of `config`, all together: how many, how many of them the method
+    refuses, pixels, pixels in which RTL and twin differ, the largest error and the largest bound of
+    the cases with a derived bound, and of those without one the number and the largest error, LSB;
+    and failures.
+
+    Refused cases are compared with the twin, but have no error. Raises BuildError, SimulationError.
+    """
+    found = simulate_jobs([SimJob(case.frame) for case in cases], config)
+    row: dict = {
+        "name": config.name, "cases": len(cases), "refused": 0, "pixels": 0, "mismatches": 0,
+        "max_lsb": 0.0, "bound_lsb": None, "unbounded": 0, "unbounded_lsb": None, "failures": [],
+    }  # fmt: skip
+    for case, result in zip(cases, found, strict=True):
+        compared = metrics.compare(twin.render(case.frame, config), result.pixels)
+        row["pixels"] += compared.pixels
+        row["mismatches"] += compared.mismatches
+        if compared.mismatches or not result.complete or result.extra_pixels:
+            row["failures"].append(f"{case.name}: RTL and model differ: {compared.first}")
+            continue
+        if error_budget.refusal(case.frame, config):
+            row["refused"] += 1
+            continue
+        error = float(corner_cases.errors(case.frame, result.pixels.rgb).max(initial=0))
+        bound = error_budget.bound_lsb(case.frame, config)
+        if bound is None:
+            row["unbounded"] += 1
+            row["unbounded_lsb"] = max(row["unbounded_lsb"] or 0.0, error)
+            continue
+        row["max_lsb"] = max(row["max_lsb"], error)
+        row["bound_lsb"] = max(row["bound_lsb"] or 0.0, float(bound))
+        if error > bound:
+            row["failures"].append(f"{case.name}: {error:.4f} LSB is beyond {bound:.4f}")
+    return row
 
 
 def results(cases: list[CornerCase]) -> list[SimResult]:
