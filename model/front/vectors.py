@@ -11,10 +11,14 @@ from phong75.model.arrays import ArrayLike, Reals
 def normalize(vectors: Reals) -> Reals:
     """`vectors` (float64[..., 3]) scaled to unit length; the zero vector stays zero."""
     # The largest component is scaled to 1 first, so that squares neither overflow nor underflow.
-    largest = np.max(np.abs(vectors), axis=-1, keepdims=True)
-    vectors = vectors / np.where(largest > 0, largest, 1.0)
-    length = np.sqrt(np.sum(vectors * vectors, axis=-1, keepdims=True))
-    return vectors / np.where(length > 0, length, 1.0)
+    # Component by component, because numpy reduces an axis of three at a tenth of the speed.
+    components = [vectors[..., axis] for axis in range(3)]
+    largest = np.maximum.reduce([np.abs(c) for c in components])
+    divisor = np.where(largest > 0, largest, 1.0)
+    x, y, z = (c / divisor for c in components)
+    length = np.sqrt(x * x + y * y + z * z)
+    divisor = np.where(length > 0, length, 1.0)
+    return np.stack([x / divisor, y / divisor, z / divisor], axis=-1)
 
 
 def apply_matrix(matrix: Reals, vectors: Reals) -> Reals:

@@ -137,6 +137,8 @@ def _reason(path: Path, error: str) -> str:
     words = " ".join(error.split())[:200]
     if "no meshes" in words or "no data" in words:
         return "the mesh has no faces"
+    if words.startswith("face "):
+        return words
     return f"not a readable mesh: {words or 'no reason given'}"
 
 
@@ -157,12 +159,6 @@ def _contents(path: Path, answer: dict[str, Any], numbers: bytes | mmap.mmap) ->
         normals = take("<f4", count, 3) if mesh["normals"] else None
         colours = take("<f4", count, 4)[:, :3] if mesh["colours"] else None
         faces = take("<u4", mesh["faces"], 3)
-        if len(faces) and faces.max() >= count:
-            face, corner = np.argwhere(faces >= count)[0]
-            index = int(faces[face, corner].astype(np.int32))
-            raise InputError(
-                f"{path}: face {face} refers to vertex {index}, but there are {count} vertices"
-            )
         parts.append(FilePart(vertices, faces, normals, colours, mesh["material"]))
     nodes = [
         (np.array(node["matrix"], np.float64).reshape(4, 4), index)

@@ -67,9 +67,9 @@ class LoadedMesh:
 
 @dataclass
 class _Soup:
-    """The triangles of all placed parts: vertices float64[V, 3], faces int64[F, 3], normals
-    float64[F, 3, 3] or None (zero vectors where a part has none), colours float64[F, 3] or None
-    (-1 where a part has none), material int64[F], of the file."""
+    """The triangles of all placed parts: vertices float64[V, 3], faces int64[F, 3], normals of the
+    vertices float64[V, 3] or None (zero vectors where a part has none), colours of the vertices
+    float64[V, 3] or None (-1 where a part has none), material int64[F], of the file."""
 
     vertices: Reals
     faces: Ints
@@ -81,14 +81,15 @@ class _Soup:
 @dataclass
 class _Surface:
     """Triangles with an area, and one vertex per point: vertices float64[V, 3], faces
-    int64[F, 3], their measures and edges; normals, colours, material as in `_Soup`."""
+    int64[F, 3], their measures and edges. soup: where they come from. corners: int64[F, 3], the
+    vertices of `soup`, of which several may be one point, with a normal and a colour each."""
 
     vertices: Reals
     faces: Ints
     measures: Measures
     edges: Edges
-    normals: Reals | None
-    colours: Reals | None
+    soup: _Soup
+    corners: Ints
     material: Ints
 
 
@@ -132,7 +133,7 @@ def load_mesh_file(path: str | Path, crease: float | None = None) -> LoadedMesh:
     normals = _normals(surface, crease, smoothing, report)
     two_sided = _two_sided(files_materials, surface.material, open_mixed, twisted, report)
     index, materials = _materials(
-        files_materials, surface.material, surface.colours, suffix, report
+        files_materials, surface.material, _face_colours(surface), suffix, report
     )
     mesh = Mesh(surface.vertices, surface.faces, normals, report.degenerate_triangles)
     return LoadedMesh(mesh, index, materials, two_sided, report)
@@ -172,14 +173,15 @@ def _surface(path: Path, soup: _Soup, report: MeshReport) -> _Surface:
     if not report.triangles:
         raise InputError(f"{path}: all {len(faces)} triangles are degenerate (no area)")
     if not report.degenerate_triangles:
-        return _Surface(vertices, faces, measures, edges, soup.normals, soup.colours, soup.material)
+        return _Surface(vertices, faces, measures, edges, soup, soup.faces, soup.material)
+    faces = faces[good]
     return _Surface(
         vertices,
-        faces[good],
+        faces,
         measures.take(good),
-        Edges.of(faces[good]),
-        None if soup.normals is None else soup.normals[good],
-        None if soup.colours is None else soup.colours[good],
+        Edges.of(faces),
+        soup,
+        soup.faces[good],
         soup.material[good],
     )
 
@@ -190,13 +192,17 @@ def _check_obj(path: Path, prepared: Prepared, contents: FileContents) -> None:
     Assimp leaves out a normal that is not there, and makes a point of a face with such a texture
     vertex. The search for the place takes long; only a file with traces of this is searched.
     """
-    lost = any(
-        part.normals is None or not np.any(part.normals, axis=1).all() for part in contents.parts
-    )
+    lost = any(part.normals is None or not _not_zero(part.normals).all() for part in contents.parts)
     if (contents.other and not prepared.lines) or (prepared.normals and lost):
         place = diagnose_obj(path)
         if place:
             raise InputError(f"{path}: {place}")
+
+
+def _not_zero(vectors: Reals) -> Flags:
+    """Which of `vectors` (float[n, 3]) have a component that is not 0: bool[n]."""
+    x, y, z = vectors.T
+    return (x != 0) | (y != 0) | (z != 0)
 
 
 def _named(text: str, others: list[str]) -> bool:
@@ -255,19 +261,20 @@ def _place(path: Path, contents: FileContents) -> _Soup:
         all_materials.append(np.full(len(faces), part.material, np.int64))
         if with_normals:
             if part.normals is None:
-                all_normals.append(np.zeros((len(faces), 3, 3)))
+                all_normals.append(np.zeros((len(vertices), 3)))
             else:
-                normals = np.where(np.isfinite(part.normals), part.normals, 0.0).astype(np.float64)
+                normals = part.normals.astype(np.float64)
+                normals[~np.isfinite(normals)] = 0.0
                 if moved:  # the cofactors are the inverse transpose times the determinant
                     rows = linear[[1, 2, 0]], linear[[2, 0, 1]]
                     cofactors = np.cross(*rows) * (-1.0 if mirrored else 1.0)
                     normals = apply_matrix(cofactors, normals)
-                all_normals.append(normals[faces])
+                all_normals.append(normals)
         if with_colours:
             if part.colours is None:
-                all_colours.append(np.full((len(faces), 3), -1.0))
+                all_colours.append(np.full((len(vertices), 3), -1.0))
             else:
-                all_colours.append(part.colours[faces].astype(np.float64).mean(axis=1))
+                all_colours.append(part.colours.astype(np.float64))
         offset += len(vertices)
     return _Soup(
         _joined(all_vertices),
@@ -300,7 +307,7 @@ def _weld(soup: _Soup) -> tuple[Reals, Ints]:
     label, first = weld(vertices)
     if len(first) == len(vertices):
         return vertices, faces
-    return vertices[first], label[faces]
+    return vertices.take(first, axis=0), label.take(faces)
 
 
 def _wind(surface: _Surface, report: MeshReport) -> tuple[Flags, Flags]:
@@ -316,25 +323,25 @@ def _wind(surface: _Surface, report: MeshReport) -> tuple[Flags, Flags]:
     sign = np.where(turned, -1.0, 1.0)
     decided = np.zeros(count, bool)  # bodies whose normals tell which side is outside
     reverse: Flags = np.zeros(count, bool)
-    if surface.normals is not None:
-        flat = surface.measures.normal[:, None, :]
-        agreement = surface.measures.area * sign * np.sum(flat * surface.normals, axis=(1, 2))
+    if surface.soup.normals is not None:
+        agreement = surface.measures.area * sign * _agreement(surface)
         decided = np.bincount(body, np.abs(agreement), count) > 0
         reverse = np.bincount(body, agreement, count) < 0
     # A body is closed if none of its edges is a border, or shared by more than two faces.
-    single = np.repeat(edges.uses != 2, edges.uses)
     is_open = np.zeros(count, bool)
-    is_open[body[edges.half[single] // 3]] = True
+    single = edges.uses != 2
+    if single.any():
+        is_open[body[edges.half[np.repeat(single, edges.uses)] // 3]] = True
     is_open[body[parts.twisted]] = True
     closed = ~is_open & ~decided
     if closed[body].any():
-        origin = vertices[faces[body, 0]]
-        a, b, c = (vertices[faces[:, i]] - origin for i in range(3))
-        triple = (
-            a[:, 0] * (b[:, 1] * c[:, 2] - b[:, 2] * c[:, 1])
-            + a[:, 1] * (b[:, 2] * c[:, 0] - b[:, 0] * c[:, 2])
-            + a[:, 2] * (b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])
+        corners = [np.ascontiguousarray(column) for column in faces.T]
+        origin = corners[0].take(body)
+        (ax, bx, cx), (ay, by, cy), (az, bz, cz) = (
+            [column.take(corner) - column.take(origin) for corner in corners]
+            for column in np.ascontiguousarray(vertices.T)
         )
+        triple = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
         volume = np.bincount(body, sign * triple, count)
         reverse = np.where(closed, volume < 0, reverse)
     turned = turned ^ reverse[body]
@@ -342,10 +349,7 @@ def _wind(surface: _Surface, report: MeshReport) -> tuple[Flags, Flags]:
         surface.faces = np.where(turned[:, None], faces[:, ::-1], faces)
         surface.measures = surface.measures.turned(turned)
         surface.edges = Edges.of(surface.faces)
-        if surface.normals is not None:
-            surface.normals = np.where(
-                turned[:, None, None], surface.normals[:, ::-1], surface.normals
-            )
+        surface.corners = np.where(turned[:, None], surface.corners[:, ::-1], surface.corners)
 
     members = np.bincount(body, minlength=count)
     mixed = np.bincount(body, parts.turned, count) > 0
@@ -353,6 +357,22 @@ def _wind(surface: _Surface, report: MeshReport) -> tuple[Flags, Flags]:
     report.bodies_turned = int(np.count_nonzero(reverse))
     report.faces_turned = int(np.count_nonzero(parts.turned))
     return (mixed & is_open & ~decided)[body], parts.twisted
+
+
+def _agreement(surface: _Surface) -> Reals:
+    """The sum of the cosines between each triangle's normal and the file's normals of its corners,
+    float64[F], times the length of the file's normals."""
+    assert surface.soup.normals is not None
+    result = np.zeros(len(surface.corners))
+    for column, flat in zip(surface.soup.normals.T, surface.measures.normal, strict=True):
+        result += flat * np.ascontiguousarray(column).take(surface.corners).sum(axis=1)
+    return result
+
+
+def _face_colours(surface: _Surface) -> Reals | None:
+    """The mean colour of the corners of each triangle, float64[F, 3]; None without colours."""
+    colours = surface.soup.colours
+    return None if colours is None else colours.take(surface.corners, axis=0).mean(axis=1)
 
 
 def _normals(
@@ -366,16 +386,16 @@ def _normals(
             surface.vertices, surface.faces, surface.measures, surface.edges, angle, smoothing
         )
 
-    normals = surface.normals
+    normals = surface.soup.normals
     if normals is not None and crease is None:
-        usable = np.any(normals != 0, axis=-1)
-        missing = int(np.count_nonzero(~usable))
-        if missing < usable.size:
+        usable = _not_zero(normals)
+        missing = 0 if usable.all() else int(np.count_nonzero(~usable[surface.corners]))
+        if missing < surface.corners.size:
             report.normals, report.corners_made = "of the file", missing
-            normals = normalize(normals)
-            if not missing:
-                return normals
-            return np.where(usable[..., None], normals, made(DEFAULT_CREASE))
+            result = normalize(normals).take(surface.corners, axis=0)
+            if missing:
+                result = np.where(usable[surface.corners][..., None], result, made(DEFAULT_CREASE))
+            return result
     angle = DEFAULT_CREASE if crease is None else crease
     report.corners_made = 3 * len(surface.faces)
     report.normals = f"made here, crease {angle:g} degrees"
