@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,8 +34,13 @@ DOMINANT = 0.75
 #: Sums of normals are in integer multiples of this. 2**15 angles of at most pi fit 63 bits.
 QUANTUM = 2.0**-46
 
-#: Faces whose geometry is computed at a time.
-BLOCK = 1 << 13
+#: Rows that are computed at a time: arrays of so many stay in the processor's cache.
+BLOCK = 1 << 14
+
+
+def blocks(count: int) -> Iterator[slice]:
+    """Slices of at most BLOCK rows, of `count` rows in all."""
+    return (slice(begin, begin + BLOCK) for begin in range(0, count, BLOCK))
 
 
 def face_normals(vertices: Reals, faces: Ints) -> Reals:
@@ -80,14 +86,12 @@ class Measures:
 def measure(vertices: Reals, faces: Ints) -> Measures:
     """The measures of `faces`. Arguments as for `face_normals`.
 
-    Some thousand faces at a time fit the processor's cache. Sides are divided by their largest
-    component, so that squares neither overflow nor underflow.
+    Sides are divided by their largest component, so that squares neither overflow nor underflow.
     """
     count = len(faces)
     result = Measures(np.empty((3, count)), np.empty(count), np.empty((count, 3)))
     columns = [np.ascontiguousarray(column) for column in vertices.T]
-    for begin in range(0, count, BLOCK):
-        block = slice(begin, begin + BLOCK)
+    for block in blocks(count):
         corners = np.ascontiguousarray(faces[block].T)
         x, y, z = (column.take(corners) for column in columns)
         (x0, x1, x2), (y0, y1, y2), (z0, z1, z2) = (
@@ -149,10 +153,13 @@ def corner_normals_of(
     vertices: float64[V, 3], no two of them equal. measures, edges: of the faces.
     """
     flat = measures.normal
-    first, second = _links(vertices, faces, flat, edges)
+    first, second = _links(vertices, faces, flat, edges, smoothing)
     face_a, face_b = first // 3, second // 3
-    x, y, z = (component.take(face_a) * component.take(face_b) for component in flat)
-    cosine = x + y + z
+    cosine = np.empty(len(first))
+    for block in blocks(len(first)):
+        a, b = face_a[block], face_b[block]
+        x, y, z = (component.take(a) * component.take(b) for component in flat)
+        cosine[block] = x + y + z
     smooth = cosine >= np.cos(np.radians(crease)) - 1e-12
     if smoothing is not None:
         a, b = smoothing[face_a], smoothing[face_b]
@@ -199,13 +206,16 @@ def _ends(half: Ints, upward: Flags) -> tuple[Ints, Ints]:
     return np.where(up, half, following), np.where(up, following, half)
 
 
-def _links(vertices: Reals, faces: Ints, flat: Reals, edges: Edges) -> tuple[Ints, Ints]:
+def _links(
+    vertices: Reals, faces: Ints, flat: Reals, edges: Edges, smoothing: Ints | None
+) -> tuple[Ints, Ints]:
     """Pairs of half-edges across which faces may be smooth, int64[n] each.
 
     An edge of two faces gives one pair. The normals of all faces at one edge lie in a plane across
     that edge. Where an edge has more faces, each is paired with the next one in the order of the
     normals' directions, round the full turn. A chain of such pairs connects two faces exactly if
-    some chain of any pairs with the same largest angle does.
+    some chain of any pairs with the same largest angle does. With smoothing groups only faces of
+    one group are paired at such an edge.
     """
     one, other = edges.pairs()
     many = np.flatnonzero(edges.uses > 2)
@@ -226,11 +236,12 @@ def _links(vertices: Reals, faces: Ints, flat: Reals, edges: Edges) -> tuple[Int
     across = own[head][edge]
     third = np.cross(axis, across)
     turn = np.arctan2(np.sum(own * third, axis=1), np.sum(own * across, axis=1))
-    order = np.lexsort((turn, edge))
-    half = half[order]
+    group = np.zeros_like(edge) if smoothing is None else smoothing[face]
+    order = np.lexsort((turn, group, edge))
+    half, edge, group = half[order], edge[order], group[order]
+    begins = np.append(True, (edge[1:] != edge[:-1]) | (group[1:] != group[:-1]))
     following = np.arange(len(half)) + 1
-    last = np.cumsum(uses) - 1
-    following[last] = head
+    following[np.append(begins[1:], True)] = np.flatnonzero(begins)
     return np.concatenate([one, half]), np.concatenate([other, half[following]])
 
 
@@ -262,12 +273,16 @@ def _group_means(group: Ints, angle: Reals, area: Reals, flat: Reals) -> Reals:
     number = np.cumsum(group == np.arange(len(group))) - 1
     group = number.take(group)
     count = int(number[-1]) + 1
-    outweighed = _outweighed(group, angle, np.repeat(area, 3), count)
+    outweighed = _outweighed(group, angle, area, count)
     weight = angle if outweighed is None else np.where(outweighed, 0.0, angle)
-    sums = np.stack([_total(group, weight * np.repeat(axis, 3), count) for axis in flat], axis=-1)
+    sums = np.zeros((3, count), np.int64)
+    for block in blocks(len(area)):
+        corners = slice(3 * block.start, 3 * block.stop)
+        for axis in range(3):
+            _add(sums[axis], group[corners], weight[corners] * np.repeat(flat[axis, block], 3))
     # Normals of opposite faces can cancel out but for the quantum.
-    mean = normalize(sums)
-    cancelled = (np.abs(sums) <= 2.0**12).all(axis=-1)
+    mean = normalize(sums.T.astype(np.float64))
+    cancelled = np.max(np.abs(sums), axis=0) <= 2**12
     result = mean.take(group, axis=0)
     if cancelled.any():
         corners = np.flatnonzero(cancelled.take(group))
@@ -276,35 +291,38 @@ def _group_means(group: Ints, angle: Reals, area: Reals, flat: Reals) -> Reals:
 
 
 def _outweighed(group: Ints, angle: Reals, area: Reals, count: int) -> Flags | None:
-    """Which corners do not count, bool[n], because a far larger flat face keeps its own normal;
+    """Which corners do not count, bool[3 F], because a far larger flat face keeps its own normal;
     None if all count.
 
-    group: int64[n], 0 to `count` - 1. angle, area: float64[n], at the corner and of its flat face.
+    group: int64[3 F], 0 to `count` - 1. angle: float64[3 F]. area: float64[F], of the flat face.
     """
     full = np.zeros(count)
-    np.maximum.at(full, group, area)
-    largest = full.take(group)
-    small = (area <= largest * (1.0 / LARGE)) & (area < largest)
+    for block in blocks(len(area)):
+        np.maximum.at(full, group[3 * block.start : 3 * block.stop], np.repeat(area[block], 3))
+    small, large = np.empty(len(group), bool), np.empty(len(group), bool)
+    for block in blocks(len(area)):
+        corners = slice(3 * block.start, 3 * block.stop)
+        own, largest = np.repeat(area[block], 3), full.take(group[corners])
+        large[corners] = own == largest
+        small[corners] = (own <= largest * (1.0 / LARGE)) & (own < largest)
     candidate = np.zeros(count, bool)
     candidate[group[small]] = True
-    candidate[group[~small & (area < largest)]] = False
-    if not candidate.any():
+    candidate[group[~small & ~large]] = False
+    corners = np.flatnonzero(candidate.take(group)) if candidate.any() else []
+    if not len(corners):
         return None
-    corners = np.flatnonzero(candidate.take(group))
-    group, angle = group[corners], angle[corners]
-    relative = area[corners] / largest[corners]
-    share = angle * relative
-    dominant = _total(group, share * (relative == 1.0), count) >= DOMINANT * _total(
-        group, share, count
-    )
+    group, large = group[corners], large[corners]
+    share = angle[corners] * (area[corners // 3] / full[group])
+    own_share, whole = np.zeros((2, count), np.int64)
+    _add(own_share, group, share * large)
+    _add(whole, group, share)
+    dominant = own_share >= DOMINANT * whole
     small[:] = False
-    small[corners] = dominant[group] & (relative < 1.0)
+    small[corners] = dominant[group] & ~large
     return small
 
 
-def _total(group: Ints, values: Reals, count: int) -> Reals:
-    """The sum of `values` (float64[n]) in each of `count` groups, in units of QUANTUM. Integers add
-    up without rounding, so the sum is the same in any order."""
-    result = np.zeros(count, np.int64)
-    np.add.at(result, group, np.rint(values * (1.0 / QUANTUM)).astype(np.int64))
-    return result.astype(np.float64)
+def _add(total: Ints, group: Ints, values: Reals) -> None:
+    """Add `values` (float64[n]) to `total` (int64[groups]) at `group` (int64[n]), in units of
+    QUANTUM. Integers add up without rounding, so that the sum is the same in any order."""
+    np.add.at(total, group, np.rint(values * (1.0 / QUANTUM)).astype(np.int64))

@@ -24,7 +24,9 @@ def weld(vertices: Reals) -> tuple[Ints, Ints]:
     count = len(vertices)
     columns = [column + 0.0 for column in vertices.T]  # + 0.0 makes 0.0 of -0.0
     bits = max(count - 1, 1).bit_length()
-    key = _hash(columns) << np.uint64(bits) | np.arange(count, dtype=np.uint64)
+    key = _hash(columns)
+    key <<= np.uint64(bits)
+    key |= np.arange(count, dtype=np.uint64)
     key.sort()
     order = (key & np.uint64((1 << bits) - 1)).view(np.int64)
     key >>= np.uint64(bits)
@@ -55,7 +57,8 @@ def _hash(columns: list[Reals]) -> NDArray[np.uint64]:
         mixed ^= mixed >> np.uint64(29)
         mixed ^= column.view(np.uint64)
         mixed *= np.uint64(factor)
-    return mixed ^ mixed >> np.uint64(32)
+    mixed ^= mixed >> np.uint64(32)
+    return mixed
 
 
 def _steps(columns: list[Reals], order: Ints) -> Flags:
@@ -150,12 +153,16 @@ class Edges:
     @classmethod
     def of(cls, faces: Ints) -> Edges:
         """The edges of `faces` (int64[F, 3], welded vertices)."""
-        start, end = faces.reshape(-1), faces[:, [1, 2, 0]].reshape(-1)
+        start, end = faces.reshape(-1), faces.take((1, 2, 0), axis=1).reshape(-1)
+        upward = start < end
         size = int(faces.max()) + 1 if len(faces) else 1
-        key = np.minimum(start, end) * size + np.maximum(start, end)
+        key = np.minimum(start, end)
+        key *= size
+        key += np.maximum(start, end, out=end)
         bits = max(len(key) - 1, 1).bit_length()
         if (size * size - 1).bit_length() + bits < 64:  # a key and its half-edge fit one word
-            key = key << bits | np.arange(len(key))
+            key <<= bits
+            key |= np.arange(len(key))
             key.sort()
             half = key & (1 << bits) - 1
             key >>= bits
@@ -163,7 +170,7 @@ class Edges:
             half = np.argsort(key, kind="stable")
             key = key[half]
         first = np.concatenate([[0], np.flatnonzero(key[1:] != key[:-1]) + 1]).astype(np.int64)
-        return cls(half, first, np.diff(np.append(first, len(half))), start < end)
+        return cls(half, first, np.diff(np.append(first, len(half))), upward)
 
     def pairs(self) -> tuple[Ints, Ints]:
         """Both half-edges of each edge that belongs to exactly two faces, int64[n] each."""

@@ -440,6 +440,15 @@ def _two_sided(
     return result
 
 
+def _numbered(key: Ints) -> tuple[Ints, Ints]:
+    """As `np.unique` of `key` (int64[n], 0 or more) with the inverse, without a sort of small ones."""
+    if key.max() >= len(key):
+        kinds, index = np.unique(key, return_inverse=True)
+        return kinds, index.reshape(-1)
+    there = np.bincount(key) > 0
+    return np.flatnonzero(there), (np.cumsum(there) - 1).take(key)
+
+
 def _materials(
     materials: list[FileMaterial], material: Ints, colours: Reals | None, suffix: str,
     report: MeshReport,
@@ -447,7 +456,7 @@ def _materials(
     """The material of each triangle, int64[F] (-1: none), and the materials of the file."""
     defined = np.array([m.defined for m in materials] or [False])
     base = np.array([m.colour for m in materials] or [(1.0, 1.0, 1.0)])
-    in_use = np.unique(material)
+    in_use = np.flatnonzero(np.bincount(material))
     undefined = {materials[i].name for i in in_use if i < len(materials) and not defined[i]}
     undefined -= {"", "DefaultMaterial"}
     report.notes += [f"material {name} is not defined" for name in sorted(undefined)]
@@ -470,7 +479,7 @@ def _materials(
         shade = np.nan_to_num(np.clip(shade, 0.0, 1.0))
         code = np.rint(shade * COLOUR_STEPS).astype(np.int64) @ np.array([1 << 16, 1 << 8, 1])
         key = key | np.where(coloured, code + 1, 0) << 32
-    kinds, index = np.unique(key, return_inverse=True)
+    kinds, index = _numbered(key)
     code, which = (kinds >> 32) - 1, (kinds & 0xFFFFFFFF) - 1
     own = [materials[i] if i >= 0 else None for i in which]
     colour = np.where(
@@ -485,7 +494,7 @@ def _materials(
         [m.w if m else 0.4 for m in own],
     )
     nothing = (code < 0) & (which < 0)  # the first kind, if it occurs at all
-    index = index.reshape(-1) - int(nothing.any())
+    index = index - int(nothing.any())
     table = table.take(np.flatnonzero(~nothing))
     report.materials = len(table)
     return index, table
