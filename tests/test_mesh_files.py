@@ -409,7 +409,7 @@ BROKEN = {
     "text.ply": ("play\n", "not a PLY file: no 'ply' at its start"),
     "count.ply": (ply(CUBE, SQUARES).replace(b"vertex 8", b"vertex x"), "header line 'element ver"),
     "cut.ply": (ply(CUBE, SQUARES, "binary_little_endian")[:-150], "cut short: its header "),
-    "cut_faces.ply": (ply(CUBE, SQUARES, "binary_little_endian")[:-9], "not a readable mesh: the "),
+    "cut_faces.ply": (ply(CUBE, SQUARES, "binary_little_endian")[:-9], "cut short: its last list"),
     "bare.ply": (ply(CUBE, SQUARES).replace(b" float y", b""), "header line 'property' has"),
     "points.ply": (ply(CUBE, []), "the mesh has no faces"),
     "cut.stl": (stl(CUBE, CUBE_FACES)[:-7], "cut short: its header declares 12 triangles, 11 fol"),

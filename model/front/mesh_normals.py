@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from phong75.model.arrays import Flags, Ints, Reals
 from phong75.model.front.mesh_topology import Edges, components, orbits, weld
-from phong75.model.front.vectors import normalize
+from phong75.model.front.vectors import blocks, normalize
 
 #: Default crease angle, degrees: edges that bend by more than this stay sharp. The side faces of a
 #: regular prism bend by 360/n degrees: 51.4 for n = 7, 60 for n = 6. So no regular polygon is near
@@ -33,14 +32,6 @@ DOMINANT = 0.75
 
 #: Sums of normals are in integer multiples of this. 2**15 angles of at most pi fit 63 bits.
 QUANTUM = 2.0**-46
-
-#: Rows that are computed at a time: arrays of so many stay in the processor's cache.
-BLOCK = 1 << 14
-
-
-def blocks(count: int) -> Iterator[slice]:
-    """Slices of at most BLOCK rows, of `count` rows in all."""
-    return (slice(begin, begin + BLOCK) for begin in range(0, count, BLOCK))
 
 
 def face_normals(vertices: Reals, faces: Ints) -> Reals:
@@ -253,7 +244,7 @@ def _flat_areas(area: Reals, a: Ints, b: Ints) -> Reals:
     if not len(a):
         return area
     region = components(len(area), a, b)
-    total = np.bincount(region, area, len(area))
+    total: Reals = np.bincount(region, area, len(area)).astype(np.float64, copy=False)
     members = np.flatnonzero(np.bincount(region, minlength=len(area)).take(region) > 2)
     if len(members):
         # Sorted by size within a region, so that the sum does not depend on the order of the faces.
@@ -275,18 +266,18 @@ def _group_means(group: Ints, angle: Reals, area: Reals, flat: Reals) -> Reals:
     count = int(number[-1]) + 1
     outweighed = _outweighed(group, angle, area, count)
     weight = angle if outweighed is None else np.where(outweighed, 0.0, angle)
-    sums = np.zeros((3, count), np.int64)
+    sums: Ints = np.zeros((3, count), np.int64)
     for block in blocks(len(area)):
         corners = slice(3 * block.start, 3 * block.stop)
         for axis in range(3):
             _add(sums[axis], group[corners], weight[corners] * np.repeat(flat[axis, block], 3))
     # Normals of opposite faces can cancel out but for the quantum.
-    mean = normalize(sums.T.astype(np.float64))
+    mean: Reals = normalize(sums.T.astype(np.float64))
     cancelled = np.max(np.abs(sums), axis=0) <= 2**12
-    result = mean.take(group, axis=0)
+    result: Reals = mean.take(group, axis=0)
     if cancelled.any():
-        corners = np.flatnonzero(cancelled.take(group))
-        result[corners] = flat.T[corners // 3]
+        own = np.flatnonzero(cancelled.take(group))
+        result[own] = flat.T[own // 3]
     return result.reshape(-1, 3, 3)
 
 
@@ -308,17 +299,17 @@ def _outweighed(group: Ints, angle: Reals, area: Reals, count: int) -> Flags | N
     candidate = np.zeros(count, bool)
     candidate[group[small]] = True
     candidate[group[~small & ~large]] = False
-    corners = np.flatnonzero(candidate.take(group)) if candidate.any() else []
-    if not len(corners):
+    if not candidate.any():
         return None
-    group, large = group[corners], large[corners]
-    share = angle[corners] * (area[corners // 3] / full[group])
+    among = np.flatnonzero(candidate.take(group))
+    group, large = group[among], large[among]
+    share = angle[among] * (area[among // 3] / full[group])
     own_share, whole = np.zeros((2, count), np.int64)
     _add(own_share, group, share * large)
     _add(whole, group, share)
     dominant = own_share >= DOMINANT * whole
     small[:] = False
-    small[corners] = dominant[group] & ~large
+    small[among] = dominant[group] & ~large
     return small
 
 

@@ -15,7 +15,7 @@ LONG_WALK = 64
 
 
 def weld(vertices: Reals) -> tuple[Ints, Ints]:
-    """(label, first) of `vertices` (float64[V, 3]): equal coordinates have an equal label.
+    """(label, first) of `vertices` (float[V, 3]): equal coordinates have an equal label.
 
     label: int64[V], 0 to U - 1 in the order of the first occurrence. first: int64[U], the index of
     that occurrence. One sort of integers, each a hash of the coordinates followed by the index,
@@ -52,10 +52,12 @@ def weld(vertices: Reals) -> tuple[Ints, Ints]:
 
 def _hash(columns: list[Reals]) -> NDArray[np.uint64]:
     """A hash of each row of `columns`, uint64[V]. Its lower bits count most."""
-    mixed = columns[0].view(np.uint64) * np.uint64(0x9E3779B97F4A7C15)
-    for column, factor in ((columns[1], 0xC2B2AE3D27D4EB4F), (columns[2], 0x165667B19E3779F9)):
+    words = [column.view(f"u{column.itemsize}") for column in columns]
+    mixed = words[0].astype(np.uint64)
+    mixed *= np.uint64(0x9E3779B97F4A7C15)
+    for word, factor in ((words[1], 0xC2B2AE3D27D4EB4F), (words[2], 0x165667B19E3779F9)):
         mixed ^= mixed >> np.uint64(29)
-        mixed ^= column.view(np.uint64)
+        mixed ^= word
         mixed *= np.uint64(factor)
     mixed ^= mixed >> np.uint64(32)
     return mixed

@@ -225,16 +225,20 @@ class Faces(NamedTuple):
 
 
 def faces_of(mesh: _Mesh) -> Faces:
-    """The faces of `mesh`. Few faces are read without numpy."""
-    count = mesh.face_count
-    if count <= MANY_FACES:
-        corners, vertices = array("I"), array("I")
-        for face in mesh.faces[:count]:
-            corners.append(face.count)
-            if face.count:
-                vertices.extend((_Uint * face.count).from_address(face.indices))
-        only_triangles = all(size == 3 for size in corners)
-        return Faces(corners, vertices, only_triangles, max(vertices, default=-1))
+    """The faces of `mesh`."""
+    if mesh.face_count > MANY_FACES:
+        return _many_faces_of(mesh)
+    corners, vertices = array("I"), array("I")
+    for face in mesh.faces[: mesh.face_count]:
+        corners.append(face.count)
+        if face.count:
+            vertices.extend((_Uint * face.count).from_address(face.indices))
+    only_triangles = all(size == 3 for size in corners)
+    return Faces(corners, vertices, only_triangles, max(vertices, default=-1))
+
+
+def _many_faces_of(mesh: _Mesh) -> Faces:
+    """The same with numpy."""
     import numpy as np
 
     class Memory:  # all of this process's memory as one array of words
@@ -244,7 +248,7 @@ def faces_of(mesh: _Mesh) -> Faces:
 
     memory = np.asarray(Memory())
     table = np.ctypeslib.as_array(ctypes.cast(mesh.faces, ctypes.POINTER(ctypes.c_uint64)),
-                                  (count, 2))  # fmt: skip
+                                  (mesh.face_count, 2))  # fmt: skip
     corners = table[:, 0].astype(np.uint32)
     # Assimp allocates the indices of each face by itself; only these words are read.
     first = (table[:, 1].astype(np.int64) - 4) >> 2

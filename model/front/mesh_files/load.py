@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,7 @@ from phong75.model.front.mesh_files.checks import (
     diagnose_obj,
     prepare,
 )
-from phong75.model.front.mesh_files.library import FileContents, read_file
+from phong75.model.front.mesh_files.library import FileContents, Reading, read_file
 from phong75.model.front.mesh_files.materials import (
     AMBIENT_SHARE,
     FileMaterial,
@@ -38,13 +39,17 @@ from phong75.model.front.mesh_normals import (
     measure,
 )
 from phong75.model.front.mesh_topology import Edges, bodies, weld
-from phong75.model.front.vectors import apply_matrix, normalize
+from phong75.model.front.vectors import apply_matrix, blocks, normalize
 
 #: All suffixes of files that the library opens.
 MESH_SUFFIXES = (*TESTED_SUFFIXES, *UNTESTED_SUFFIXES)
 
 #: The axis that points up; "y (guess)" for other suffixes. STL is the format of 3D printing.
 UP_AXES = {".stl": "z (guess)", ".glb": "y (as glTF prescribes)", ".gltf": "y (as glTF prescribes)"}
+
+#: An OBJ file of more bytes than this is read while its text is looked at. Few such files turn out
+#: to need a change, and are read once more.
+LARGE_TEXT = 1_000_000
 
 #: Colours of vertices are told apart in steps of 1/255, which is what most files store.
 COLOUR_STEPS = 255
@@ -67,9 +72,10 @@ class LoadedMesh:
 
 @dataclass
 class _Soup:
-    """The triangles of all placed parts: vertices float64[V, 3], faces int64[F, 3], normals of the
-    vertices float64[V, 3] or None (zero vectors where a part has none), colours of the vertices
-    float64[V, 3] or None (-1 where a part has none), material int64[F], of the file."""
+    """The triangles of all placed parts: vertices float[V, 3], faces int64[F, 3], normals of the
+    vertices float[V, 3] or None (zero vectors where a part has none), colours of the vertices
+    float[V, 3] or None (-1 where a part has none), material int64[F], of the file. Numbers stay in
+    the file's 32 bits where no node moves them, which halves the memory."""
 
     vertices: Reals
     faces: Ints
@@ -117,6 +123,13 @@ def load_mesh_file(path: str | Path, crease: float | None = None) -> LoadedMesh:
         content = notes.as_obj(notes.read_object(path))
         prepared = Prepared(len(content), content)
         contents = read_file(path.with_suffix(".obj"), prepared)
+    elif suffix == ".obj" and path.stat().st_size > LARGE_TEXT:
+        with Reading(path, path.stat().st_size) as reading:  # the other core looks at the text
+            prepared = prepare(path)
+            if prepared.content is None:
+                contents = reading.result()
+        if prepared.content is not None:
+            contents = read_file(path, prepared)
     else:
         prepared = prepare(path)
         contents = read_file(path, prepared)
@@ -127,10 +140,9 @@ def load_mesh_file(path: str | Path, crease: float | None = None) -> LoadedMesh:
         _check_obj(path, prepared, contents)
     report = _report(path, prepared, contents)
     surface = _surface(path, _place(path, contents), report)
-    open_mixed, twisted = _wind(surface, report)
     files_materials, groups = _file_materials(contents, prepared, suffix)
     smoothing = groups[surface.material] if prepared.smoothing and crease is None else None
-    normals = _normals(surface, crease, smoothing, report)
+    open_mixed, twisted, normals = _wind_and_normals(surface, crease, smoothing, report)
     two_sided = _two_sided(files_materials, surface.material, open_mixed, twisted, report)
     index, materials = _materials(
         files_materials, surface.material, _face_colours(surface), suffix, report
@@ -243,7 +255,7 @@ def _place(path: Path, contents: FileContents) -> _Soup:
     offset = 0
     for matrix, index in contents.nodes:
         part = contents.parts[index]
-        vertices = part.vertices.astype(np.float64)
+        vertices = part.vertices
         _check_vertices(path, vertices, part.faces)
         faces = part.faces.astype(np.int64)
         linear = matrix[:3, :3]
@@ -252,7 +264,7 @@ def _place(path: Path, contents: FileContents) -> _Soup:
         if moved:
             if not np.isfinite(matrix).all():
                 raise InputError(f"{path}: the matrix of a node is not finite")
-            vertices = apply_matrix(linear, vertices) + matrix[:3, 3]
+            vertices = apply_matrix(linear, vertices.astype(np.float64)) + matrix[:3, 3]
             _check_vertices(path, vertices, faces)
         if mirrored:
             faces = faces[:, ::-1]
@@ -261,14 +273,16 @@ def _place(path: Path, contents: FileContents) -> _Soup:
         all_materials.append(np.full(len(faces), part.material, np.int64))
         if with_normals:
             if part.normals is None:
-                all_normals.append(np.zeros((len(vertices), 3)))
+                all_normals.append(np.zeros_like(vertices))
             else:
-                normals = part.normals.astype(np.float64)
-                normals[~np.isfinite(normals)] = 0.0
+                normals = part.normals
+                finite = np.isfinite(normals)
+                if not finite.all():
+                    normals = np.where(finite, normals, 0)
                 if moved:  # the cofactors are the inverse transpose times the determinant
                     rows = linear[[1, 2, 0]], linear[[2, 0, 1]]
                     cofactors = np.cross(*rows) * (-1.0 if mirrored else 1.0)
-                    normals = apply_matrix(cofactors, normals)
+                    normals = apply_matrix(cofactors, normals.astype(np.float64))
                 all_normals.append(normals)
         if with_colours:
             if part.colours is None:
@@ -306,8 +320,8 @@ def _weld(soup: _Soup) -> tuple[Reals, Ints]:
         vertices = vertices[used]
     label, first = weld(vertices)
     if len(first) == len(vertices):
-        return vertices, faces
-    return vertices.take(first, axis=0), label.take(faces)
+        return vertices.astype(np.float64), faces
+    return vertices.take(first, axis=0).astype(np.float64), label.take(faces)
 
 
 def _wind(surface: _Surface, report: MeshReport) -> tuple[Flags, Flags]:
@@ -363,9 +377,12 @@ def _agreement(surface: _Surface) -> Reals:
     """The sum of the cosines between each triangle's normal and the file's normals of its corners,
     float64[F], times the length of the file's normals."""
     assert surface.soup.normals is not None
+    columns = np.ascontiguousarray(surface.soup.normals.T)
     result = np.zeros(len(surface.corners))
-    for column, flat in zip(surface.soup.normals.T, surface.measures.normal, strict=True):
-        result += flat * np.ascontiguousarray(column).take(surface.corners).sum(axis=1)
+    for block in blocks(len(result)):
+        for column, flat in zip(columns, surface.measures.normal, strict=True):
+            for corner in np.ascontiguousarray(surface.corners[block].T):
+                result[block] += flat[block] * column.take(corner)
     return result
 
 
@@ -375,35 +392,48 @@ def _face_colours(surface: _Surface) -> Reals | None:
     return None if colours is None else colours.take(surface.corners, axis=0).mean(axis=1)
 
 
-def _normals(
+def _wind_and_normals(
     surface: _Surface, crease: float | None, smoothing: Ints | None, report: MeshReport
-) -> Reals:
-    """The unit normals of all corners, float64[F, 3, 3]: the file's, else made here."""
+) -> tuple[Flags, Flags, Reals]:
+    """What `_wind` returns, and the unit normals of all corners, float64[F, 3, 3]: the file's,
+    else made here. The other core makes normals while this one winds the faces; they are made again
+    if faces were turned."""
+    angle = DEFAULT_CREASE if crease is None else crease
+    given = None if crease is not None else surface.soup.normals
+    usable = None if given is None else _not_zero(given)
+    missing = surface.corners.size
+    if usable is not None:
+        missing = 0 if usable.all() else int(np.count_nonzero(~usable[surface.corners]))
+    vertices, faces, measures, edges = (
+        surface.vertices, surface.faces, surface.measures, surface.edges
+    )  # fmt: skip
 
-    def made(angle: float) -> Reals:
-        report.crease = angle
-        return corner_normals_of(
+    def make() -> Reals:
+        return corner_normals_of(vertices, faces, measures, edges, angle, smoothing)
+
+    made: Reals = np.zeros((0, 3, 3))
+    with ThreadPoolExecutor(1) as other_core:
+        later = other_core.submit(copy_context().run, make) if missing else None
+        wound = _wind(surface, report)
+        if later:
+            made = later.result()
+    if missing and surface.faces is not faces:
+        made = corner_normals_of(
             surface.vertices, surface.faces, surface.measures, surface.edges, angle, smoothing
         )
-
-    normals = surface.soup.normals
-    if normals is not None and crease is None:
-        usable = _not_zero(normals)
-        missing = 0 if usable.all() else int(np.count_nonzero(~usable[surface.corners]))
-        if missing < surface.corners.size:
-            report.normals, report.corners_made = "of the file", missing
-            result = normalize(normals).take(surface.corners, axis=0)
-            if missing:
-                result = np.where(usable[surface.corners][..., None], result, made(DEFAULT_CREASE))
-            return result
-    angle = DEFAULT_CREASE if crease is None else crease
-    report.corners_made = 3 * len(surface.faces)
+    report.corners_made = missing
+    report.crease = angle if missing else None
+    if given is not None and usable is not None and missing < surface.corners.size:
+        report.normals = "of the file"
+        normals = normalize(given).take(surface.corners, axis=0)
+        if missing:
+            normals = np.where(usable[surface.corners][..., None], normals, made)
+        return *wound, normals
     report.normals = f"made here, crease {angle:g} degrees"
-    result = made(angle)
     if smoothing is not None:
         report.normals = "made here, by the smoothing groups of the file"
         report.crease = None if (smoothing >= 0).all() else angle
-    return result
+    return *wound, made
 
 
 def _file_materials(
@@ -441,7 +471,7 @@ def _two_sided(
 
 
 def _numbered(key: Ints) -> tuple[Ints, Ints]:
-    """As `np.unique` of `key` (int64[n], 0 or more) with the inverse, without a sort of small ones."""
+    """As `np.unique` of `key` (int64[n], 0 or more) with the inverse; small keys are not sorted."""
     if key.max() >= len(key):
         kinds, index = np.unique(key, return_inverse=True)
         return kinds, index.reshape(-1)
