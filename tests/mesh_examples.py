@@ -8,8 +8,10 @@ import warnings
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from phong75.model.frame import InputError
+from phong75.model.front.mesh_files.load import load_mesh_file
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
 from tests.mesh_writers import CUBE, SQUARES, Gltf, cube_glb, obj, ply, stl, triangles
@@ -210,6 +212,27 @@ def mutated(seed, more=()):
         else:
             del data[at:]
     return f"a{Path(name).suffix}", bytes(data)
+
+
+def what_is_read(path):
+    """The triangles and the report of a file, or why it is refused."""
+    try:
+        loaded = load_mesh_file(path)
+    except InputError as error:
+        return str(error)
+    mesh = loaded.mesh
+    arrays = mesh.vertices, mesh.faces, mesh.normals, loaded.material
+    return [a.tobytes() for a in arrays] + loaded.report.lines()
+
+
+def complaint_about_memory(path):
+    """What goes wrong when a file is read twice, with other numbers in the reader's unused memory:
+    "" if nothing does. MALLOC_PERTURB_ makes the C library fill memory that is freed."""
+    first = what_is_read(path)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("MALLOC_PERTURB_", "165")
+        second = what_is_read(path)
+    return "" if first == second else "not the same when read again"
 
 
 def complaint_about(folder, name, content):

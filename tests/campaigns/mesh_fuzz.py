@@ -3,7 +3,8 @@
 
 Each file is one of the tests' examples, or one of the mesh files in FOLDER, with a few bytes
 changed. It must be drawn, or refused in one line; whatever the reader of the file does, this
-process must neither fail nor hang.
+process must neither fail nor hang. Each file is also read twice, with other numbers in the reader's
+unused memory: what is read must be the same.
 
 Exit code: 0; 1 if a file was neither; 2 if the command line is wrong.
 """
@@ -26,7 +27,7 @@ from rich.progress import track
 from phong75.model.front.mesh_files.checks import TESTED_SUFFIXES
 from phong75.scripts import console, options, recorded
 from phong75.scripts.main import single
-from tests.mesh_examples import complaint_about, mutated
+from tests.mesh_examples import complaint_about, complaint_about_memory, mutated
 
 MOST = 1_000_000
 
@@ -38,7 +39,9 @@ def attempt(more: list[tuple[str, bytes]], seed: int) -> str:
     """What goes wrong with file `seed`; "" if nothing does. more: further files to mutate."""
     with tempfile.TemporaryDirectory() as folder:
         try:
-            return complaint_about(Path(folder), *mutated(seed, more))
+            name, content = mutated(seed, more)
+            complaint = complaint_about(Path(folder), name, content)
+            return complaint or complaint_about_memory(Path(folder) / name)
         except Exception:
             return "an exception: " + traceback.format_exc().splitlines()[-1]
 
