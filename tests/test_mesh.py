@@ -258,7 +258,7 @@ BAD = {
     "text.stl": ("hello", "not an STL file: neither 'solid' nor a binary header"),
     "text.glb": ("glTFxxxxxxxxx", "not a GLB file: no 'glTF' at its start"),
     "flat.obj": (TRIANGLE + "f 1 2 2\nf 1 1 1\n", "all 2 triangles are degenerate"),
-    "flat_in_line.obj": ("v 0 0 0\nv 1 1 1\nv 3 3 3\nf 1 2 3\n", "all 1 triangles are degenerate"),
+    "flat_in_line.obj": ("v 0 0 0\nv 1 1 1\nv 3 3 3\nf 1 2 3\n", "the only triangle is degenerate"),
     "mesh.xyz": ("", "not a mesh file"),
 }
 

@@ -23,7 +23,7 @@ import numpy as np
 
 from phong75.model.frame import InputError
 from phong75.model.front import notes
-from phong75.model.front.mesh_files.quantized import dequantize
+from phong75.model.front.mesh_files.quantized import dequantize, index_out_of_range
 
 #: Files with these suffixes are tested, feature by feature.
 TESTED_SUFFIXES = (".obj", ".ply", ".stl", ".glb", ".gltf", notes.OBJECT_SUFFIX)
@@ -407,8 +407,12 @@ def _gltf(name: str, data: Data, prepared: Prepared) -> None:
 
 
 def _dequantized(name: str, root: dict[str, Any], binary: bytes) -> bool:
-    """As `dequantize`; raises InputError if the JSON is not built as glTF prescribes."""
+    """As `dequantize`; raises InputError if the JSON is not built as glTF prescribes, or if an
+    index is out of range."""
     try:
+        wrong = index_out_of_range(name, root, binary)
+        if wrong:
+            raise InputError(f"{name}: {wrong}")
         return dequantize(name, root, binary)
     except (AttributeError, KeyError, TypeError, ValueError, IndexError, OverflowError) as error:
         message = " ".join(f"{type(error).__name__} {error}".split())[:120]
@@ -424,6 +428,9 @@ def _gltf_content(name: str, text: bytes, prepared: Prepared) -> dict[str, Any]:
         raise InputError(f"{name}: malformed JSON: {message}") from None
     if not isinstance(root, dict):
         raise InputError(f"{name}: malformed glTF: no object at the top")
+    asset = root.get("asset")
+    if isinstance(asset, dict) and str(asset.get("version")).startswith("1"):
+        raise InputError(f"{name}: version {asset['version']} of glTF; only version 2 is read")
     for key in ("extensionsRequired", "extensionsUsed"):
         extensions = [str(e) for e in _list(root, key)]
         needed = [e for e in extensions if not HARMLESS.fullmatch(e)]

@@ -159,6 +159,8 @@ class Files:
             if name not in self.missing:
                 self.missing.append(name)
             return None
+        found = os.path.basename(name)  # in another folder than where it was looked for first
+        self.missing = [other for other in self.missing if os.path.basename(other) != found]
         file = _File(*self._calls, None)
         address = ctypes.addressof(file)
         self._open[address] = file, handle, size

@@ -164,9 +164,14 @@ def _report(path: Path, prepared: Prepared, contents: FileContents) -> MeshRepor
         notes=list(prepared.notes),
     )
     if contents.other:
-        report.unused.append(f"{contents.other} points and lines")
-    missing = [Path(name) for name in contents.missing]
-    report.notes += [f"{p.name} is not there" for p in missing if p.suffix.lower() == ".mtl"]
+        report.unused.append(
+            f"{contents.other} {'points and lines' if contents.other > 1 else 'point or line'}"
+        )
+    missing = dict.fromkeys(Path(name).name for name in contents.missing)
+    missing = [name for name in missing if name.lower().endswith(".mtl")]
+    if len(missing) > 1:  # Assimp looks for one of the file's own name when the named one is lost
+        missing = [name for name in missing if name != f"{path.stem}.mtl"]
+    report.notes += [f"{name} is not there" for name in missing]
     # Assimp writes a vertex of OBJ once for each corner, so that unused ones are gone.
     report.unused_vertices = None if suffix == ".obj" else _unused_vertices(contents)
     return report
@@ -183,7 +188,8 @@ def _surface(path: Path, soup: _Soup, report: MeshReport) -> _Surface:
     report.triangles = int(np.count_nonzero(good))
     report.degenerate_triangles = len(faces) - report.triangles
     if not report.triangles:
-        raise InputError(f"{path}: all {len(faces)} triangles are degenerate (no area)")
+        which = "the only triangle is" if len(faces) == 1 else f"all {len(faces)} triangles are"
+        raise InputError(f"{path}: {which} degenerate (no area)")
     if not report.degenerate_triangles:
         return _Surface(vertices, faces, measures, edges, soup, soup.faces, soup.material)
     faces = faces[good]
