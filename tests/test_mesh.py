@@ -8,6 +8,7 @@ import pytest
 import trimesh
 
 from phong75.model.frame import InputError
+from phong75.model.front import mesh_topology
 from phong75.model.front.mesh import (
     Mesh,
     corner_normals,
@@ -105,6 +106,19 @@ def test_opposite_faces_keep_their_own_normals():
     vertices = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], float)
     normals = corner_normals(vertices, np.array([(0, 1, 2), (2, 1, 0)]), 180)
     assert normals[0].tolist() == [[0, 0, 1]] * 3 and normals[1].tolist() == [[0, 0, -1]] * 3
+
+
+@pytest.mark.parametrize("bits", [0, 1, 64])
+def test_points_of_one_hash_are_told_apart(monkeypatch, bits):
+    """Also where all points have one hash, or one of two."""
+    rng = np.random.default_rng(75)
+    points = rng.integers(-2, 3, (300, 3)) * np.array([1.0, -0.5, 0.0])
+    hash_ = mesh_topology._hash
+    monkeypatch.setattr(mesh_topology, "_hash", lambda c: hash_(c) & np.uint64((1 << bits) - 1))
+    label, first = mesh_topology.weld(points)
+    seen = {}
+    assert label.tolist() == [seen.setdefault(tuple(p), len(seen)) for p in points.tolist()]
+    assert first.tolist() == [label.tolist().index(k) for k in range(len(seen))]
 
 
 # -- files -------------------------------------------------------------------------------------
