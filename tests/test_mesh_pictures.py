@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from phong75.model import twin
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import InputError
-from phong75.model.front.mesh import corner_normals, make_mesh, rotation_matrix
+from phong75.model.front.mesh import make_mesh, rotation_matrix
 from phong75.model.front.mesh_files.materials import Materials, reduce_materials
 from phong75.model.front.scene import Material, load_scene
 from phong75.model.scene_to_frame import front_end
@@ -216,9 +216,6 @@ def test_the_order_of_faces_changes_no_normal(seed, sides):
     order = rng.permutation(len(faces))
     other = make_mesh("tube", points, faces[order], crease=56.0).normals
     assert np.array_equal(one[order], other)
-    group = rng.integers(-1, 3, len(faces))
-    grouped = corner_normals(points, faces, 56.0, group)
-    assert np.array_equal(grouped[order], corner_normals(points, faces[order], 56.0, group[order]))
     if 360 / sides < 56:  # the tube stays smooth beside its fins
         tube = points[faces[: 2 * sides]] * (1, 1, 0)
         assert one[: 2 * sides] == pytest.approx(tube, abs=1e-9)
