@@ -69,17 +69,17 @@ def test_only_faces_that_hang_together_share_a_normal():
     assert normals[8:10] == pytest.approx(np.broadcast_to(back, (2, 3, 3)))
 
 
-def test_faces_of_one_group_share_a_normal_at_an_edge_of_three():
-    """Also if the face between them is of another group."""
-    turn = np.radians([0, 50, 100])
-    rim = np.stack([np.cos(turn), np.sin(turn), np.zeros(3)], axis=-1)
+def test_faces_of_one_group_share_a_normal_at_an_edge_of_four():
+    """Also if the faces between them are of another group."""
+    turn = np.radians([0, 50, 100, 150])
+    rim = np.stack([np.cos(turn), np.sin(turn), np.zeros(4)], axis=-1)
     vertices = np.concatenate([[[0, 0, -1.0], [0, 0, 1.0]], rim])
-    faces = np.array([(0, 1, 2), (0, 1, 3), (0, 1, 4)])
-    for order in ([0, 1, 2], [1, 2, 0], [2, 1, 0]):
-        normals = corner_normals(vertices, faces[order], 0, np.array([1, 2, 1])[order])
-        flat = face_normals(vertices, faces)
-        expected = np.stack([normalize(flat[0] + flat[2]), flat[1], normalize(flat[0] + flat[2])])
-        assert normals[:, :2] == pytest.approx(np.stack([expected[order]] * 2, axis=1))
+    faces = np.array([(0, 1, 2 + k) for k in range(4)])
+    flat = face_normals(vertices, faces)
+    means = normalize(flat[[0, 1, 0, 1]] + flat[[2, 3, 2, 3]])
+    for order in ([0, 1, 2, 3], [1, 2, 0, 3], [3, 1, 0, 2]):
+        normals = corner_normals(vertices, faces[order], 0, np.array([1, 2, 1, 2])[order])
+        assert normals[:, :2] == pytest.approx(np.stack([means[order]] * 2, axis=1))
 
 
 def test_round_the_end_of_a_crease_faces_hang_together():
