@@ -25,6 +25,7 @@ from phong75.model.config import TECHNIQUES, Config, Format
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
 from phong75.model.front.mesh_files import library
 from phong75.model.front.scene import SHAPES
+from phong75.model.front.vectors import normalize
 from phong75.model.reflectance import Power, curve_distance, curve_words
 from phong75.model.studies import corner_cases, light_places
 from phong75.model.studies.methods import points
@@ -305,6 +306,26 @@ def features() -> str:
     """The fields of Config that pruning decides on, and what a build lacks without each."""
     rows = ((f"`{row.feature}`", row.saves) for row in prune(_frame(1.0, 10.0))[1])
     return markdown(("field of `Config`", "without it go"), rows, left=2)
+
+
+#: The width of the chamfers in `chamfered_bend`, as a share of the distance from the middle of the
+#: box to its sides.
+CHAMFER = 0.05
+
+
+def chamfered_bend(by_area: bool) -> float:
+    """By how many degrees the side of a chamfered box would bend at its corners, if it did not keep
+    its own normal: the angle between that normal and the mean of the normals at the corner.
+
+    The side, two chamfers and the triangle at the corner of the box meet there. by_area: whether
+    a face counts by its angle times its area, or by its angle alone.
+    """
+    normals = normalize(np.array([(0, 0, 1), (1, 0, 1), (0, 1, 1), (1, 1, 1)], np.float64))
+    side, width = 2 * (1 - CHAMFER), np.sqrt(2) * CHAMFER
+    weight = np.array([90.0, 90.0, 90.0, 60.0])
+    if by_area:
+        weight *= (side**2, side * width, side * width, np.sqrt(3) / 4 * width**2)
+    return float(np.degrees(np.arccos(normalize(weight @ normals)[2])))
 
 
 def mesh_memory() -> str:

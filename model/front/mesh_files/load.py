@@ -27,6 +27,8 @@ from phong75.model.front.mesh_files.checks import (
 from phong75.model.front.mesh_files.library import FileContents, Reading, read_file
 from phong75.model.front.mesh_files.materials import (
     AMBIENT_SHARE,
+    LEAST_N,
+    MOST_N,
     FileMaterial,
     Materials,
     file_material,
@@ -503,7 +505,8 @@ def _materials(
     if any(m.clipped for m in seen):
         clipped = sum(m.clipped for m in seen)
         report.notes.append(
-            f"n of {clipped} material{'s' * (clipped > 1)} limited to the range 1 to 128"
+            f"n of {clipped} material{'s' * (clipped > 1)} limited to the range "
+            f"{LEAST_N:g} to {MOST_N:g}"
         )
 
     key = np.where(defined[material], material, -1) + 1
