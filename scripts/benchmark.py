@@ -14,6 +14,7 @@ import dataclasses
 import json
 import os
 import re
+import struct
 import subprocess
 import tempfile
 import time
@@ -115,20 +116,33 @@ def twin_rates(frame) -> dict[str, float]:
 
 
 def write_torus(path: Path, segments: int, sides: int) -> int:
-    """Write a torus of 2 `segments` `sides` triangles as OBJ or binary STL, without normals;
-    returns the number of triangles. It is written in pieces, because it may be large."""
+    """Write a torus of 2 `segments` `sides` triangles as OBJ, binary PLY, binary STL or GLB.
+
+    Returns the number of triangles. The file has no normals, and is written in pieces because it
+    may be large.
+    """
     around = np.arange(segments + 1) * 2 * np.pi / segments
     about = np.arange(sides + 1) * 2 * np.pi / sides
     around[-1], about[-1] = 0.0, 0.0  # the same points at the seams, to the bit
     radius, height = 1 + 0.4 * np.cos(about), 0.4 * np.sin(about)
+    index = np.arange(sides)
+    points, triangles = segments * sides, 2 * segments * sides
 
-    def ring(index: int) -> np.ndarray:
-        x, y = np.cos(around[index]) * radius, np.sin(around[index]) * radius
+    def ring(k: int) -> np.ndarray:
+        """The points of ring k, the first of them at its end once more: float32[sides + 1, 3]."""
+        x, y = np.cos(around[k]) * radius, np.sin(around[k]) * radius
         return np.column_stack([x, y, height]).astype("<f4")
+
+    def faces(k: int) -> np.ndarray:
+        """The points of the triangles between ring k and the next one: uint32[2 sides, 3]."""
+        a, b = k * sides, (k + 1) % segments * sides
+        quads = [a + index, b + index, b + (index + 1) % sides, a + (index + 1) % sides]
+        corners = np.stack([quads[i] for i in (0, 1, 2, 0, 2, 3)], axis=1)
+        return corners.reshape(-1, 3).astype("<u4")
 
     with open(path, "wb") as file:
         if path.suffix == ".stl":
-            file.write(b" " * 80 + np.uint32(2 * segments * sides).astype("<u4").tobytes())
+            file.write(b" " * 80 + np.uint32(triangles).astype("<u4").tobytes())
             kind = [("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("rest", "<u2")]
             for k in range(segments):
                 a, b = ring(k), ring(k + 1)
@@ -136,16 +150,57 @@ def write_torus(path: Path, segments: int, sides: int) -> int:
                 records["corners"][::2] = np.stack([a[:-1], b[:-1], b[1:]], axis=1)
                 records["corners"][1::2] = np.stack([a[:-1], b[1:], a[1:]], axis=1)
                 file.write(records.tobytes())
-            return 2 * segments * sides
+            return triangles
+        if path.suffix == ".obj":
+            for k in range(segments):
+                np.savetxt(file, ring(k)[:-1], "v %.6f %.6f %.6f")
+            for k in range(segments):
+                np.savetxt(file, faces(k) + 1, "f %d %d %d")
+            return triangles
+        if path.suffix == ".ply":
+            axes = "".join(f"property float {axis}\n" for axis in "xyz")
+            file.write(
+                f"ply\nformat binary_little_endian 1.0\nelement vertex {points}\n{axes}"
+                f"element face {triangles}\nproperty list uchar uint vertex_indices\n"
+                "end_header\n".encode()
+            )
+        else:
+            file.write(_glb_head(points, triangles))
         for k in range(segments):
-            np.savetxt(file, ring(k)[:-1], "v %.6f %.6f %.6f")
-        index = np.arange(sides)
+            file.write(ring(k)[:-1].tobytes())
         for k in range(segments):
-            a, b = k * sides + 1, (k + 1) % segments * sides + 1
-            quads = [a + index, b + index, b + (index + 1) % sides, a + (index + 1) % sides]
-            faces = np.stack([quads[i] for i in (0, 1, 2, 0, 2, 3)], axis=1).reshape(-1, 3)
-            np.savetxt(file, faces, "f %d %d %d")
-    return 2 * segments * sides
+            corners = faces(k)
+            if path.suffix == ".ply":
+                rows = np.full(len(corners), 3, [("count", "u1"), ("corners", "<u4", 3)])
+                rows["corners"] = corners
+                corners = rows
+            file.write(corners.tobytes())
+    return triangles
+
+
+def _glb_head(points: int, triangles: int) -> bytes:
+    """The bytes of a GLB file before the points and the indices of its one mesh."""
+    sizes = 12 * points, 12 * triangles
+    ends = [1.5, 1.5, 0.5]
+    root = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": points, "type": "VEC3",
+             "min": [-end for end in ends], "max": ends},
+            {"bufferView": 1, "componentType": 5125, "count": 3 * triangles, "type": "SCALAR"},
+        ],
+        "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": sizes[0]},
+                        {"buffer": 0, "byteOffset": sizes[0], "byteLength": sizes[1]}],
+        "buffers": [{"byteLength": sum(sizes)}],
+    }  # fmt: skip
+    text = json.dumps(root).encode()
+    text += b" " * (-len(text) % 4)
+    length = 12 + 8 + len(text) + 8 + sum(sizes)
+    return b"".join([
+        struct.pack("<4sII", b"glTF", 2, length), struct.pack("<I4s", len(text), b"JSON"), text,
+        struct.pack("<I4s", sum(sizes), b"BIN\0"),
+    ])  # fmt: skip
 
 
 def mesh_rates() -> dict[str, float]:
@@ -153,7 +208,7 @@ def mesh_rates() -> dict[str, float]:
     by the suffix of the file."""
     rates = {}
     with tempfile.TemporaryDirectory(dir=BUILD) as name:
-        for suffix in ("obj", "stl"):
+        for suffix in ("obj", "ply", "stl", "glb"):
             path = Path(name) / f"torus.{suffix}"
             count = write_torus(path, *MESH_STEPS)
             best = float("inf")

@@ -8,8 +8,10 @@ import warnings
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from phong75.model.frame import InputError
+from phong75.model.front.mesh_files.load import load_mesh_file
 from phong75.model.front.scene import load_scene
 from phong75.model.scene_to_frame import front_end
 from tests.mesh_writers import CUBE, SQUARES, Gltf, cube_glb, obj, ply, stl, triangles
@@ -212,21 +214,46 @@ def mutated(seed, more=()):
     return f"a{Path(name).suffix}", bytes(data)
 
 
-def complaint_about(folder, name, content):
-    """What goes wrong with a file of `content`: "" if it is refused in one line or drawn."""
+def complaint_about(folder, name, content, twice=False):
+    """What goes wrong with a file of `content`: "" if it is refused in one line or drawn.
+
+    twice: it is also read again, with other numbers in the reader's unused memory, which
+    MALLOC_PERTURB_ makes the C library fill; what is read must be the same.
+    """
     path = folder / name
     path.write_bytes(content)
     warnings.simplefilter("error")
+    line, mesh = "", None
     try:
         scene = load_scene(path, (64, 48))
+        mesh = scene.objects[0].mesh
     except InputError as error:
         line = str(error)
         fine = "\n" not in line and line.startswith(str(path)) and len(line) < len(str(path)) + 260
-        return "" if fine else f"an odd message: {line!r}"
-    mesh = scene.objects[0].mesh
+        if not fine:
+            return f"an odd message: {line!r}"
+    if twice:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv("MALLOC_PERTURB_", "165")
+            if not _reads_the_same(path, mesh, line):
+                return "not the same when read again"
+    if mesh is None:
+        return ""
     if not (len(mesh.faces) and np.isfinite(mesh.vertices).all()):
         return "vertices that are not finite"
     if np.abs(np.linalg.norm(mesh.normals, axis=-1) - 1).max() > 1e-9:
         return "normals that are not of length 1"
     made = front_end(scene)
     return "" if len(made.frame.spans) or made.empty else "no pixel and no reason"
+
+
+def _reads_the_same(path, mesh, line):
+    """Whether a file is `mesh`, or is refused with `line`."""
+    try:
+        other = load_mesh_file(path).mesh
+    except InputError as error:
+        return str(error) == line
+    return mesh is not None and all(
+        np.array_equal(getattr(mesh, name), getattr(other, name))
+        for name in ("vertices", "faces", "normals")
+    )

@@ -8,6 +8,7 @@ import pytest
 import trimesh
 
 from phong75.model.frame import InputError
+from phong75.model.front import mesh_topology
 from phong75.model.front.mesh import (
     Mesh,
     corner_normals,
@@ -68,6 +69,19 @@ def test_only_faces_that_hang_together_share_a_normal():
     assert normals[8:10] == pytest.approx(np.broadcast_to(back, (2, 3, 3)))
 
 
+def test_faces_of_one_group_share_a_normal_at_an_edge_of_four():
+    """Also if the faces between them are of another group."""
+    turn = np.radians([0, 50, 100, 150])
+    rim = np.stack([np.cos(turn), np.sin(turn), np.zeros(4)], axis=-1)
+    vertices = np.concatenate([[[0, 0, -1.0], [0, 0, 1.0]], rim])
+    faces = np.array([(0, 1, 2 + k) for k in range(4)])
+    flat = face_normals(vertices, faces)
+    means = normalize(flat[[0, 1, 0, 1]] + flat[[2, 3, 2, 3]])
+    for order in ([0, 1, 2, 3], [1, 2, 0, 3], [3, 1, 0, 2]):
+        normals = corner_normals(vertices, faces[order], 0, np.array([1, 2, 1, 2])[order])
+        assert normals[:, :2] == pytest.approx(np.stack([means[order]] * 2, axis=1))
+
+
 def test_round_the_end_of_a_crease_faces_hang_together():
     """One edge of six at a vertex is a crease: the faces still meet the other way round."""
     turn = np.arange(6) * np.pi / 3
@@ -105,6 +119,19 @@ def test_opposite_faces_keep_their_own_normals():
     vertices = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], float)
     normals = corner_normals(vertices, np.array([(0, 1, 2), (2, 1, 0)]), 180)
     assert normals[0].tolist() == [[0, 0, 1]] * 3 and normals[1].tolist() == [[0, 0, -1]] * 3
+
+
+@pytest.mark.parametrize("bits", [0, 1, 64])
+def test_points_of_one_hash_are_told_apart(monkeypatch, bits):
+    """Also where all points have one hash, or one of two."""
+    rng = np.random.default_rng(75)
+    points = rng.integers(-2, 3, (300, 3)) * np.array([1.0, -0.5, 0.0])
+    hash_ = mesh_topology._hash
+    monkeypatch.setattr(mesh_topology, "_hash", lambda c: hash_(c) & np.uint64((1 << bits) - 1))
+    label, first = mesh_topology.weld(points)
+    seen = {}
+    assert label.tolist() == [seen.setdefault(tuple(p), len(seen)) for p in points.tolist()]
+    assert first.tolist() == [label.tolist().index(k) for k in range(len(seen))]
 
 
 # -- files -------------------------------------------------------------------------------------
@@ -258,7 +285,7 @@ BAD = {
     "text.stl": ("hello", "not an STL file: neither 'solid' nor a binary header"),
     "text.glb": ("glTFxxxxxxxxx", "not a GLB file: no 'glTF' at its start"),
     "flat.obj": (TRIANGLE + "f 1 2 2\nf 1 1 1\n", "all 2 triangles are degenerate"),
-    "flat_in_line.obj": ("v 0 0 0\nv 1 1 1\nv 3 3 3\nf 1 2 3\n", "all 1 triangles are degenerate"),
+    "flat_in_line.obj": ("v 0 0 0\nv 1 1 1\nv 3 3 3\nf 1 2 3\n", "the only triangle is degenerate"),
     "mesh.xyz": ("", "not a mesh file"),
 }
 

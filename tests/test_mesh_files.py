@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from phong75.model.frame import InputError
 from phong75.model.front.mesh import is_closed
 from phong75.model.front.mesh_files import library
+from phong75.model.front.mesh_files import load as load_module
 from phong75.model.front.mesh_files.checks import UNTESTED_SUFFIXES
 from phong75.model.front.mesh_files.load import load_mesh_file
 from phong75.model.front.mesh_normals import normals_and_areas
@@ -288,6 +289,16 @@ def test_normals_of_the_file_come_before_groups_and_crease_before_all(tmp_path):
     assert mesh.normals == pytest.approx(mesh.vertices[mesh.faces] / np.sqrt(3), abs=1e-6)
 
 
+def test_a_large_file_is_read_while_it_is_looked_at(tmp_path, monkeypatch):
+    """As a small one is: also if the look finds that it must be changed first, or is wrong."""
+    monkeypatch.setattr(load_module, "LARGE_TEXT", 0)
+    for name in ("quads.obj", "comments.obj"):
+        loaded = load(tmp_path, name, CUBES[name])
+        assert volume(loaded.mesh) == pytest.approx(8) and len(loaded.mesh.faces) == 12
+    with pytest.raises(InputError, match="line 15: vertex 9 has one coordinate"):
+        load(tmp_path, "a.obj", PLAIN + "v 3")
+
+
 # -- materials -------------------------------------------------------------------------------------
 
 MTL = b"""newmtl shiny
@@ -319,6 +330,8 @@ def test_materials_of_obj(tmp_path):
     (tmp_path / "a.mtl").unlink()
     lost = load_mesh_file(tmp_path / "a.obj")
     assert (lost.material == -1).all() and "a.mtl is not there" in lost.report.lines()
+    lost = load(tmp_path, "a.obj", text.replace("a.mtl", "b.mtl"))
+    assert [line for line in lost.report.lines() if "mtl" in line] == ["b.mtl is not there"]
 
 
 @pytest.mark.parametrize("metallic, roughness, n, w", [
@@ -409,7 +422,7 @@ BROKEN = {
     "text.ply": ("play\n", "not a PLY file: no 'ply' at its start"),
     "count.ply": (ply(CUBE, SQUARES).replace(b"vertex 8", b"vertex x"), "header line 'element ver"),
     "cut.ply": (ply(CUBE, SQUARES, "binary_little_endian")[:-150], "cut short: its header "),
-    "cut_faces.ply": (ply(CUBE, SQUARES, "binary_little_endian")[:-9], "not a readable mesh: the "),
+    "cut_faces.ply": (ply(CUBE, SQUARES, "binary_little_endian")[:-9], "cut short: its last list"),
     "bare.ply": (ply(CUBE, SQUARES).replace(b" float y", b""), "header line 'property' has"),
     "points.ply": (ply(CUBE, []), "the mesh has no faces"),
     "cut.stl": (stl(CUBE, CUBE_FACES)[:-7], "cut short: its header declares 12 triangles, 11 fol"),
@@ -419,7 +432,10 @@ BROKEN = {
     "json.glb": (GOOD_GLB.replace(b'"asset"', b'"asset:'), "malformed JSON: "),
     "list.gltf": (b"[]", "malformed glTF: no object at the top"),
     "lost.gltf": (cube_glb().gltf("lost.bin"), "not a readable mesh: "),
-    "index.glb": (gltf_file(lambda f: f.node(f.mesh(CUBE, [(0, 1, 8)]))), ""),
+    "index.glb": (gltf_file(lambda f: f.node(f.mesh(CUBE, [(0, 1, 8)]))), "mesh 0: index 2 re"),
+    "polygon.ply": (ply(CUBE, [*SQUARES, (0, 1, 3, 900)]), "face 6 refers to vertex 900, but "),
+    "first.gltf": (b'{"asset": {"version": "1.0"}}', "version 1.0 of glTF; only version 2 is read"),
+    "mixed.ply": (ply(CUBE, [*CUBE_FACES, *SQUARES], "binary_big_endian")[:-3], "cut short: its "),
     "empty.stl": (stl(CUBE, []), "the mesh has no faces"),
     "empty_ascii.stl": (stl(CUBE, [], "ascii"), "the mesh has no faces"),
     "nan.ply": (ply([(np.nan, 0, 0), *CUBE[1:]], SQUARES, "binary_big_endian"), "vertex 0 = (nan"),

@@ -42,6 +42,29 @@ def on_screen(scene):
     return x / w / scene.width * 2 - 1, y / w / scene.height * 2 - 1
 
 
+def test_color_may_be_spelled_colour(scene):
+    text = (
+        """background = [0, 0, 0]\n[light]\ncolor = [1, 0.5, 0]\n[materials.colour]
+color = [0.5, 0.25, 0]\n"""
+        + MINIMAL
+    )
+    one, other = (scene(text.replace("color =", f"{word} =") + 'material = "colour"\n')
+                  for word in ("color", "colour"))  # fmt: skip
+    assert one.materials == other.materials and other.materials[0].color == (0.5, 0.25, 0)
+    assert one.lights[0].diffuse == other.lights[0].diffuse == (1, 0.5, 0)
+
+
+def test_what_the_file_leaves_open_is_said(scene):
+    above = "[camera]\ndirection = [0, 0, 1]\n" + MINIMAL
+    assert scene(above).remarks == ["camera: looks along z, so that y points up"]
+    light = '[light]\nposition = "eye"\n'
+    assert not scene(light + MINIMAL).remarks
+    light += "attenuation = { linear = 1.0 }\n"
+    (remark,) = scene(light + MINIMAL).remarks
+    assert remark.endswith("are measured from the scene's nearest point")
+    assert not scene(light + "[camera]\nprojection = 'perspective'\n" + MINIMAL).remarks
+
+
 # -- bundled scenes and defaults ---------------------------------------------------------------
 
 
@@ -248,7 +271,10 @@ MISTAKES = {
     "two_side = true\n" + MINIMAL: r"two_side: unknown key; did you mean two_sided\?",
     MINIMAL + "radios = 3": r"objects\[0\].radios: unknown key; did you mean radius\?",
     MINIMAL + "tube = 3": r"objects\[0\].tube: unknown key",
-    with_material("colour = [0, 0, 0]"): r"materials.m.colour: unknown key; did you mean color\?",
+    with_material("colour = [0, 0]"): r"materials.m.colour = \[0.0, 0.0\] does not have 3 numbers",
+    with_material(
+        "colour = [0, 0, 0]\ncolor = [0, 0, 0]"
+    ): "materials.m.colour and color cannot bo",
     with_material("W = {degrees = [1], values = [1], x = 1}"): "materials.m.W.x: unknown key",
     "[camera]\nfow = 3\n" + MINIMAL: r"camera.fow: unknown key; did you mean fov\?",
     "[light]\nhue = 3\n" + MINIMAL: "light.hue: unknown key",

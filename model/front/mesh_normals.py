@@ -9,7 +9,7 @@ import numpy as np
 
 from phong75.model.arrays import Flags, Ints, Reals
 from phong75.model.front.mesh_topology import Edges, components, orbits, weld
-from phong75.model.front.vectors import normalize
+from phong75.model.front.vectors import blocks, normalize
 
 #: Default crease angle, degrees: edges that bend by more than this stay sharp. The side faces of a
 #: regular prism bend by 360/n degrees: 51.4 for n = 7, 60 for n = 6. So no regular polygon is near
@@ -33,9 +33,6 @@ DOMINANT = 0.75
 #: Sums of normals are in integer multiples of this. 2**15 angles of at most pi fit 63 bits.
 QUANTUM = 2.0**-46
 
-#: Faces whose geometry is computed at a time.
-BLOCK = 1 << 13
-
 
 def face_normals(vertices: Reals, faces: Ints) -> Reals:
     """Unit normals of the faces, float64[F, 3]; zero for degenerate faces.
@@ -49,15 +46,15 @@ def normals_and_areas(vertices: Reals, faces: Ints) -> tuple[Reals, Reals]:
     """Unit normals of the faces, float64[F, 3], and their areas, float64[F]; zero for degenerate
     faces. Arguments as for `face_normals`."""
     measured = measure(vertices, faces)
-    return measured.normal, measured.area
+    return measured.normal.T.copy(), measured.area
 
 
 @dataclass
 class Measures:
     """Normals, areas and angles of F triangles.
 
-    normal: float64[F, 3], unit length; zero for degenerate faces. area: float64[F], zero for
-    degenerate faces. angle: float64[F, 3], at the corners, radians.
+    normal: float64[3, F], components of unit vectors; zero for degenerate faces. area: float64[F],
+    zero for degenerate faces. angle: float64[F, 3], at the corners, radians.
     """
 
     normal: Reals
@@ -66,12 +63,12 @@ class Measures:
 
     def take(self, which: Flags) -> Measures:
         """Those of the faces `which`."""
-        return Measures(self.normal[which], self.area[which], self.angle[which])
+        return Measures(self.normal[:, which], self.area[which], self.angle[which])
 
     def turned(self, which: Flags) -> Measures:
         """Those of the same faces, `which` of them wound the other way."""
         return Measures(
-            np.where(which[:, None], -self.normal, self.normal),
+            np.where(which, -self.normal, self.normal),
             self.area,
             np.where(which[:, None], self.angle[:, ::-1], self.angle),
         )
@@ -80,24 +77,34 @@ class Measures:
 def measure(vertices: Reals, faces: Ints) -> Measures:
     """The measures of `faces`. Arguments as for `face_normals`.
 
-    Some thousand faces at a time fit the processor's cache. Sides are divided by their largest
-    component, so that squares neither overflow nor underflow.
+    Sides are divided by their largest component, so that squares neither overflow nor underflow.
     """
-    result = Measures(np.empty((len(faces), 3)), np.empty(len(faces)), np.empty((len(faces), 3)))
-    for begin in range(0, len(faces), BLOCK):
-        block = slice(begin, begin + BLOCK)
-        corners = np.ascontiguousarray(vertices[faces[block]].transpose(1, 2, 0))
-        sides = np.roll(corners, -1, axis=0) - corners
-        longest = np.max(np.abs(sides), axis=(0, 1))
-        (x0, y0, z0), (x1, y1, z1), (x2, y2, z2) = sides / np.where(longest > 0, longest, 1.0)
-        cross = np.stack([z0 * y2 - y0 * z2, x0 * z2 - z0 * x2, y0 * x2 - x0 * y2])
-        dots = np.stack([x0 * x2 + y0 * y2 + z0 * z2, x1 * x0 + y1 * y0 + z1 * z0,
-                         x2 * x1 + y2 * y1 + z2 * z1])  # fmt: skip
+    count = len(faces)
+    result = Measures(np.empty((3, count)), np.empty(count), np.empty((count, 3)))
+    columns = [np.ascontiguousarray(column) for column in vertices.T]
+    for block in blocks(count):
+        corners = np.ascontiguousarray(faces[block].T)
+        x, y, z = (column.take(corners) for column in columns)
+        (x0, x1, x2), (y0, y1, y2), (z0, z1, z2) = (
+            (c[1] - c[0], c[2] - c[1], c[0] - c[2]) for c in (x, y, z)
+        )
+        longest = np.zeros(x.shape[1])
+        for side in (x0, x1, x2, y0, y1, y2, z0, z1, z2):
+            np.maximum(longest, np.abs(side), out=longest)
+        divisor = np.where(longest > 0, longest, 1.0)
+        for side in (x0, x1, x2, y0, y1, y2, z0, z1, z2):
+            side /= divisor
+        cross = z0 * y2 - y0 * z2, x0 * z2 - z0 * x2, y0 * x2 - x0 * y2
         length = np.sqrt(cross[0] ** 2 + cross[1] ** 2 + cross[2] ** 2)
         good = length > DEGENERATE_AREA
-        result.normal[block] = np.where(good, cross / np.where(good, length, 1.0), 0.0).T
+        divisor = np.where(good, length, 1.0)
+        for axis in range(3):
+            result.normal[axis, block] = np.where(good, cross[axis] / divisor, 0.0)
         result.area[block] = np.where(good, length * longest**2 / 2.0, 0.0)
-        result.angle[block] = np.arctan2(length, -dots).T
+        angle = result.angle[block]
+        angle[:, 0] = np.arctan2(length, -(x0 * x2 + y0 * y2 + z0 * z2))
+        angle[:, 1] = np.arctan2(length, -(x1 * x0 + y1 * y0 + z1 * z0))
+        angle[:, 2] = np.arctan2(length, -(x2 * x1 + y2 * y1 + z2 * z1))
     return result
 
 
@@ -137,9 +144,13 @@ def corner_normals_of(
     vertices: float64[V, 3], no two of them equal. measures, edges: of the faces.
     """
     flat = measures.normal
-    first, second = _links(vertices, faces, flat, edges)
+    first, second = _links(vertices, faces, flat, edges, smoothing)
     face_a, face_b = first // 3, second // 3
-    cosine = np.sum(flat[face_a] * flat[face_b], axis=1)
+    cosine = np.empty(len(first))
+    for block in blocks(len(first)):
+        a, b = face_a[block], face_b[block]
+        x, y, z = (component.take(a) * component.take(b) for component in flat)
+        cosine[block] = x + y + z
     smooth = cosine >= np.cos(np.radians(crease)) - 1e-12
     if smoothing is not None:
         a, b = smoothing[face_a], smoothing[face_b]
@@ -148,8 +159,7 @@ def corner_normals_of(
     area = _flat_areas(measures.area, face_a[coplanar], face_b[coplanar])
 
     group = _groups(faces, edges, first, second, smooth)
-    mean = _group_means(group, measures.angle.reshape(-1), area, flat)
-    return np.where(np.any(mean != 0, axis=-1, keepdims=True), mean, flat[:, None, :])
+    return _group_means(group, measures.angle.reshape(-1), area, flat)
 
 
 def _groups(faces: Ints, edges: Edges, first: Ints, second: Ints, smooth: Flags) -> Ints:
@@ -187,13 +197,16 @@ def _ends(half: Ints, upward: Flags) -> tuple[Ints, Ints]:
     return np.where(up, half, following), np.where(up, following, half)
 
 
-def _links(vertices: Reals, faces: Ints, flat: Reals, edges: Edges) -> tuple[Ints, Ints]:
+def _links(
+    vertices: Reals, faces: Ints, flat: Reals, edges: Edges, smoothing: Ints | None
+) -> tuple[Ints, Ints]:
     """Pairs of half-edges across which faces may be smooth, int64[n] each.
 
     An edge of two faces gives one pair. The normals of all faces at one edge lie in a plane across
     that edge. Where an edge has more faces, each is paired with the next one in the order of the
     normals' directions, round the full turn. A chain of such pairs connects two faces exactly if
-    some chain of any pairs with the same largest angle does.
+    some chain of any pairs with the same largest angle does. With smoothing groups only faces of
+    one group are paired at such an edge.
     """
     one, other = edges.pairs()
     many = np.flatnonzero(edges.uses > 2)
@@ -210,14 +223,16 @@ def _links(vertices: Reals, faces: Ints, flat: Reals, edges: Edges) -> tuple[Int
     # All faces of an edge measure the direction of their normals in the axes of its first face.
     head = np.cumsum(uses) - uses
     axis = normalize(along[head][edge])
-    across = flat[face[head]][edge]
+    own = flat[:, face].T
+    across = own[head][edge]
     third = np.cross(axis, across)
-    turn = np.arctan2(np.sum(flat[face] * third, axis=1), np.sum(flat[face] * across, axis=1))
-    order = np.lexsort((turn, edge))
-    half = half[order]
+    turn = np.arctan2(np.sum(own * third, axis=1), np.sum(own * across, axis=1))
+    group = np.zeros_like(edge) if smoothing is None else smoothing[face]
+    order = np.lexsort((turn, group, edge))
+    half, edge, group = half[order], edge[order], group[order]
+    begins = np.append(True, (edge[1:] != edge[:-1]) | (group[1:] != group[:-1]))
     following = np.arange(len(half)) + 1
-    last = np.cumsum(uses) - 1
-    following[last] = head
+    following[np.append(begins[1:], True)] = np.flatnonzero(begins)
     return np.concatenate([one, half]), np.concatenate([other, half[following]])
 
 
@@ -229,66 +244,76 @@ def _flat_areas(area: Reals, a: Ints, b: Ints) -> Reals:
     if not len(a):
         return area
     region = components(len(area), a, b)
-    members = np.flatnonzero(np.bincount(region, minlength=len(area))[region] > 1)
-    # Sorted by size within a region, so that the sum does not depend on the order of the faces.
-    members = members[np.lexsort((area[members], region[members]))]
-    start = np.flatnonzero(np.diff(region[members], prepend=-1))
-    total = np.zeros(len(area))
-    total[region[members[start]]] = np.add.reduceat(area[members], start)
-    result = area.copy()
-    result[members] = total[region[members]]
-    return result
+    total: Reals = np.bincount(region, area, len(area)).astype(np.float64, copy=False)
+    members = np.flatnonzero(np.bincount(region, minlength=len(area)).take(region) > 2)
+    if len(members):
+        # Sorted by size within a region, so that the sum does not depend on the order of the faces.
+        members = members[np.lexsort((area[members], region[members]))]
+        start = np.flatnonzero(np.diff(region[members], prepend=-1))
+        total[region[members[start]]] = np.add.reduceat(area[members], start)
+    return total.take(region)
 
 
 def _group_means(group: Ints, angle: Reals, area: Reals, flat: Reals) -> Reals:
-    """The unit normal of each corner's group, float64[F, 3, 3]; zero where normals cancel out.
+    """The unit normal of each corner's group, float64[F, 3, 3]; that of the corner's face where the
+    normals of a group cancel out.
 
     group: int64[3 F], the smallest corner of each corner's group. angle: float64[3 F]. area:
-    float64[F], of the flat face. flat: float64[F, 3].
+    float64[F], of the flat face. flat: float64[3, F].
     """
     number = np.cumsum(group == np.arange(len(group))) - 1
-    group = number[group]
+    group = number.take(group)
     count = int(number[-1]) + 1
-    weight = np.where(_outweighed(group, angle, np.repeat(area, 3), count), 0.0, angle)
-    weight = weight.reshape(-1, 3)
-    sums = np.stack(
-        [_total(group, (weight * flat[:, axis, None]).reshape(-1), count) for axis in range(3)],
-        axis=-1,
-    )
+    outweighed = _outweighed(group, angle, area, count)
+    weight = angle if outweighed is None else np.where(outweighed, 0.0, angle)
+    sums: Ints = np.zeros((3, count), np.int64)
+    for block in blocks(len(area)):
+        corners = slice(3 * block.start, 3 * block.stop)
+        for axis in range(3):
+            _add(sums[axis], group[corners], weight[corners] * np.repeat(flat[axis, block], 3))
     # Normals of opposite faces can cancel out but for the quantum.
-    size = np.max(np.abs(sums), axis=-1, keepdims=True)
-    mean = np.where(size > 2.0**12, normalize(sums), 0.0)
-    return mean[group].reshape(-1, 3, 3)
+    mean: Reals = normalize(sums.T.astype(np.float64))
+    cancelled = np.max(np.abs(sums), axis=0) <= 2**12
+    result: Reals = mean.take(group, axis=0)
+    if cancelled.any():
+        own = np.flatnonzero(cancelled.take(group))
+        result[own] = flat.T[own // 3]
+    return result.reshape(-1, 3, 3)
 
 
-def _outweighed(group: Ints, angle: Reals, area: Reals, count: int) -> Flags:
-    """Which corners do not count, bool[n], because a far larger flat face keeps its own normal.
+def _outweighed(group: Ints, angle: Reals, area: Reals, count: int) -> Flags | None:
+    """Which corners do not count, bool[3 F], because a far larger flat face keeps its own normal;
+    None if all count.
 
-    group: int64[n], 0 to `count` - 1. angle, area: float64[n], at the corner and of its flat face.
+    group: int64[3 F], 0 to `count` - 1. angle: float64[3 F]. area: float64[F], of the flat face.
     """
     full = np.zeros(count)
-    np.maximum.at(full, group, area)
-    relative = area / full[group]
-    small = relative <= 1.0 / LARGE
+    for block in blocks(len(area)):
+        np.maximum.at(full, group[3 * block.start : 3 * block.stop], np.repeat(area[block], 3))
+    small, large = np.empty(len(group), bool), np.empty(len(group), bool)
+    for block in blocks(len(area)):
+        corners = slice(3 * block.start, 3 * block.stop)
+        own, largest = np.repeat(area[block], 3), full.take(group[corners])
+        large[corners] = own == largest
+        small[corners] = (own <= largest * (1.0 / LARGE)) & (own < largest)
     candidate = np.zeros(count, bool)
     candidate[group[small]] = True
-    candidate[group[~small & (relative < 1.0)]] = False
+    candidate[group[~small & ~large]] = False
     if not candidate.any():
-        return small & False
-    corners = np.flatnonzero(candidate[group])
-    group, angle, relative = group[corners], angle[corners], relative[corners]
-    share = angle * relative
-    dominant = _total(group, share * (relative == 1.0), count) >= DOMINANT * _total(
-        group, share, count
-    )
+        return None
+    among = np.flatnonzero(candidate.take(group))
+    group, large = group[among], large[among]
+    share = angle[among] * (area[among // 3] / full[group])
+    own_share, whole = np.zeros((2, count), np.int64)
+    _add(own_share, group, share * large)
+    _add(whole, group, share)
+    dominant = own_share >= DOMINANT * whole
     small[:] = False
-    small[corners] = dominant[group] & (relative < 1.0)
+    small[among] = dominant[group] & ~large
     return small
 
 
-def _total(group: Ints, values: Reals, count: int) -> Reals:
-    """The sum of `values` (float64[n]) in each of `count` groups, in units of QUANTUM. Integers add
-    up without rounding, so the sum is the same in any order."""
-    result = np.zeros(count, np.int64)
-    np.add.at(result, group, np.rint(values * (1.0 / QUANTUM)).astype(np.int64))
-    return result.astype(np.float64)
+def _add(total: Ints, group: Ints, values: Reals) -> None:
+    """Add `values` (float64[n]) to `total` (int64[groups]) at `group` (int64[n]), in units of
+    QUANTUM. Integers add up without rounding, so that the sum is the same in any order."""
+    np.add.at(total, group, np.rint(values * (1.0 / QUANTUM)).astype(np.int64))

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from phong75.model.arrays import Flags, Ints, Reals
 
@@ -14,39 +15,59 @@ LONG_WALK = 64
 
 
 def weld(vertices: Reals) -> tuple[Ints, Ints]:
-    """(label, first) of `vertices` (float64[V, 3]): equal coordinates have an equal label.
+    """(label, first) of `vertices` (float[V, 3]): equal coordinates have an equal label.
 
     label: int64[V], 0 to U - 1 in the order of the first occurrence. first: int64[U], the index of
-    that occurrence. Vertices are sorted by a hash of their coordinates, because one sort of
-    integers takes a fifth of the time of a sort by three columns.
+    that occurrence. One sort of integers, each a hash of the coordinates followed by the index,
+    takes a tenth of the time of a sort by three columns.
     """
+    count = len(vertices)
     columns = [column + 0.0 for column in vertices.T]  # + 0.0 makes 0.0 of -0.0
-    mixed = columns[0].view(np.uint64) * np.uint64(0x9E3779B97F4A7C15)
-    for column, factor in ((columns[1], 0xC2B2AE3D27D4EB4F), (columns[2], 0x165667B19E3779F9)):
-        mixed ^= mixed >> np.uint64(29)
-        mixed ^= column.view(np.uint64)
-        mixed *= np.uint64(factor)
-    order = np.argsort(mixed)
+    bits = max(count - 1, 1).bit_length()
+    key = _hash(columns)
+    key <<= np.uint64(bits)
+    key |= np.arange(count, dtype=np.uint64)
+    key.sort()
+    order = (key & np.uint64((1 << bits) - 1)).view(np.int64)
+    key >>= np.uint64(bits)
+    alike = key[1:] == key[:-1]
+    if not alike.any():
+        return np.arange(count), np.arange(count)
     differs = _steps(columns, order)
-    mixed = mixed[order]
-    if np.any(differs & (mixed[1:] == mixed[:-1])):  # two points with one hash
-        order = np.lexsort(columns)
+    collided = np.flatnonzero(alike & differs)
+    if len(collided):  # different points of one hash: only these are sorted by their coordinates
+        run = np.concatenate([[0], np.cumsum(~alike)])
+        rows = np.flatnonzero(np.isin(run, run[collided]))
+        among = order[rows]
+        order[rows] = among[np.lexsort((*(column[among] for column in columns), run[rows]))]
         differs = _steps(columns, order)
-    start = np.concatenate([[0], np.flatnonzero(differs) + 1]).astype(np.int64)
-    first = np.minimum.reduceat(order, start)
-    rank = np.empty(len(first), np.int64)
-    by_occurrence = np.argsort(first)
-    rank[by_occurrence] = np.arange(len(first))
-    label = np.empty(len(vertices), np.int64)
-    label[order] = np.repeat(rank, np.diff(np.append(start, len(order))))
-    return label, first[by_occurrence]
+    start = np.concatenate([[0], np.flatnonzero(differs) + 1])
+    is_first = np.zeros(count, bool)
+    is_first[order[start]] = True  # both sorts leave equal points in the order of their index
+    rank = np.cumsum(is_first) - 1
+    label = np.empty(count, np.int64)
+    label[order] = np.repeat(rank[order[start]], np.diff(np.append(start, count)))
+    return label, np.flatnonzero(is_first)
+
+
+def _hash(columns: list[Reals]) -> NDArray[np.uint64]:
+    """A hash of each row of `columns`, uint64[V]. Its lower bits count most."""
+    words = [column.view(f"u{column.itemsize}") for column in columns]
+    mixed = words[0].astype(np.uint64)
+    mixed *= np.uint64(0x9E3779B97F4A7C15)
+    for word, factor in ((words[1], 0xC2B2AE3D27D4EB4F), (words[2], 0x165667B19E3779F9)):
+        mixed ^= mixed >> np.uint64(29)
+        mixed ^= word
+        mixed *= np.uint64(factor)
+    mixed ^= mixed >> np.uint64(32)
+    return mixed
 
 
 def _steps(columns: list[Reals], order: Ints) -> Flags:
     """Whether each point of `order` but the first differs from the one before it: bool[V - 1]."""
     result = np.zeros(max(len(order) - 1, 0), bool)
     for column in columns:
-        arranged = column[order]
+        arranged = column.take(order)
         result |= arranged[1:] != arranged[:-1]
     return result
 
@@ -54,25 +75,31 @@ def _steps(columns: list[Reals], order: Ints) -> Flags:
 def components(count: int, a: Ints, b: Ints) -> Ints:
     """A label for each of `count` nodes, int64[count]: the smallest node that links lead to.
 
-    a, b: int64[n], the nodes at both ends of each link. Each round hooks roots to smaller roots
-    and shortens all paths to their root; links within a tree drop out.
+    a, b: int64[n], the nodes at both ends of each link. Each round hooks nodes to smaller ones,
+    shortens all paths to their root, and leaves a smaller problem: the roots, numbered anew in
+    their order, and the links between them.
     """
-    label = np.arange(count)
-    root_a, root_b = a, b
-    while True:
-        open_ = root_a != root_b
-        if not open_.any():
-            return label
-        a, b = a[open_], b[open_]
-        low = np.minimum(root_a[open_], root_b[open_])
-        high = np.maximum(root_a[open_], root_b[open_])
-        label[high] = low  # any of several links will do: labels only fall
+    rounds = []
+    while len(a):
+        nodes = np.arange(count)
+        label = nodes.copy()
+        label[np.maximum(a, b)] = np.minimum(a, b)  # any of several links will do: labels only fall
         while True:
-            shorter = label[label]
+            shorter = label.take(label)
             if np.array_equal(shorter, label):
                 break
             label = shorter
-        root_a, root_b = label[a], label[b]
+        root = label == nodes
+        label = (np.cumsum(root) - 1).take(label)
+        rounds.append((label, np.flatnonzero(root)))
+        count = len(rounds[-1][1])
+        a, b = label.take(a), label.take(b)
+        apart = a != b
+        a, b = a[apart], b[apart]
+    result = np.arange(count)
+    for label, roots in reversed(rounds):
+        result = roots.take(result).take(label)
+    return result
 
 
 def orbits(following: Ints, vertex: Ints) -> Ints:
@@ -128,13 +155,24 @@ class Edges:
     @classmethod
     def of(cls, faces: Ints) -> Edges:
         """The edges of `faces` (int64[F, 3], welded vertices)."""
-        start, end = faces.reshape(-1), np.roll(faces, -1, axis=1).reshape(-1)
+        start, end = faces.reshape(-1), faces.take((1, 2, 0), axis=1).reshape(-1)
+        upward = start < end
         size = int(faces.max()) + 1 if len(faces) else 1
-        key = np.minimum(start, end) * size + np.maximum(start, end)
-        half = np.argsort(key)
-        key = key[half]
+        key = np.minimum(start, end)
+        key *= size
+        key += np.maximum(start, end, out=end)
+        bits = max(len(key) - 1, 1).bit_length()
+        if (size * size - 1).bit_length() + bits < 64:  # a key and its half-edge fit one word
+            key <<= bits
+            key |= np.arange(len(key))
+            key.sort()
+            half = key & (1 << bits) - 1
+            key >>= bits
+        else:
+            half = np.argsort(key, kind="stable")
+            key = key[half]
         first = np.concatenate([[0], np.flatnonzero(key[1:] != key[:-1]) + 1]).astype(np.int64)
-        return cls(half, first, np.diff(np.append(first, len(half))), start < end)
+        return cls(half, first, np.diff(np.append(first, len(half))), upward)
 
     def pairs(self) -> tuple[Ints, Ints]:
         """Both half-edges of each edge that belongs to exactly two faces, int64[n] each."""

@@ -348,7 +348,7 @@ def _mesh_scene(path: Path, size: tuple[int, int] | None, config: Config) -> Sce
         table["direction"] = [0.35, 0.35, 1.0]
     root = _Table({"camera": table}, str(path))
     width, height = _size(root, size, config)
-    camera = _camera(root.table("camera"), item.mesh.vertices, width, height)
+    camera = _camera(root.table("camera"), item.mesh.vertices, width, height, [])
     rows: list[Material] = []
     _place_materials([(item, materials)], rows, {}, config, path)
     return Scene(
@@ -465,10 +465,16 @@ def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Confi
     if of_files:
         _place_materials(of_files, materials, indices, config, path)
     points = np.concatenate([o.mesh.vertices for o in objects])
-    camera = _camera(root.table("camera"), points, width, height)
+    remarks: list[str] = []
+    camera = _camera(root.table("camera"), points, width, height, remarks)
     lights = _lights(root, camera, points)
     ambient = root.triple("ambient", WHITE, 0.0, MOST_LIGHT)
-    exposure, remarks = _exposure(root, materials, lights, ambient)
+    exposure = _exposure(root, materials, lights, ambient, remarks)
+    remarks += [
+        f"{light.name}: the eye of an orthographic camera has no place; distances along the line of "
+        "sight are measured from the scene's nearest point"
+        for light in lights if light.place.along and light.place.falloff
+    ]  # fmt: skip
     root.finish()
     return Scene(
         path.stem,
@@ -490,16 +496,17 @@ def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Confi
 
 
 def _exposure(
-    root: _Table, materials: list[Material], lights: list[Light], ambient: Colour
-) -> tuple[float, list[str]]:
-    """The factor of all intensities, and a sentence about it if the scene file does not give it.
+    root: _Table, materials: list[Material], lights: list[Light], ambient: Colour,
+    remarks: list[str],
+) -> float:  # fmt: skip
+    """The factor of all intensities; a sentence is added to `remarks` if it is found here.
 
     "Imax" is 1/Imax, with Imax of the notes' "Intensity Computations": the formula with all
     products of vectors 1 and the largest coefficients of the scene's materials, W among them, in
     the colour in which it is largest. No channel saturates then.
     """
     if root.value("exposure", None) != "Imax":
-        return root.real("exposure", 1.0, 1e-6, 1e6), []
+        return root.real("exposure", 1.0, 1e-6, 1e6)
     ka, kd = (np.max([getattr(m, k) for m in materials], axis=0) for k in ("ka", "kd"))
     ks = np.max([m.ks * max(m.weight_values) for m in materials], axis=0)
     total = np.max([m.emission for m in materials], axis=0) + ka * ambient
@@ -508,7 +515,8 @@ def _exposure(
     largest = float(max(total))
     if largest == 0:
         raise root.error("exposure", '= "Imax": no light is reflected at all, Imax is 0')
-    return 1 / largest, [f"Imax is {largest:g}: all intensities are divided by it"]
+    remarks.append(f"Imax is {largest:g}: all intensities are divided by it")
+    return 1 / largest
 
 
 def _scaled(colour: Colour, factor: float) -> Colour:
@@ -721,10 +729,11 @@ def _shape(table: _Table, shape: str) -> Mesh:
     return SHAPES[shape](**arguments)
 
 
-def _camera(table: _Table, points: Reals, width: int, height_px: int) -> Camera:
+def _camera(table: _Table, points: Reals, width: int, height_px: int, remarks: list[str]) -> Camera:
     """The camera of a [camera] table. Missing keys are chosen so that `points` fill the picture.
 
     points: float64[V, 3], all vertices of the scene. width, height_px: of the picture, pixels.
+    remarks: gets a sentence if the default `up` does not fit.
     """
     aspect = width / height_px
     projection = table.choice("projection", ("orthographic", "perspective"), "orthographic")
@@ -773,8 +782,9 @@ def _camera(table: _Table, points: Reals, width: int, height_px: int) -> Camera:
     if axes is None:
         if up is not None:
             raise table.error("up", f"= {_show(up)} is parallel to the line of sight")
-        axes = view_axes(back, (0.0, 1.0, 0.0))  # the camera looks along the default `up`
+        axes = view_axes(back, (0.0, 1.0, 0.0))
         assert axes is not None
+        remarks.append("camera: looks along z, so that y points up")
 
     if perspective:
         fov = fov or DEFAULT_FOV
@@ -899,6 +909,7 @@ def _show(value: object) -> str:
 class _Table:
     """A table of a scene file: returns checked values and remembers which keys were read.
 
+    `colour` is another spelling of the key `color`; messages show it as it is written.
     Every method raises InputError that names the file and the key if a value is wrong. Methods
     with a `default` return it if the key is missing.
     """
@@ -906,9 +917,12 @@ class _Table:
     def __init__(self, values: dict[str, Any], file: str, prefix: str = "") -> None:
         self.values, self.file, self.prefix = values, file, prefix
         self.known: set[str] = set()
+        self.british = False  # whether the file has `colour` for `color`
 
     def where(self, key: str) -> str:
         """The file and the full name of `key`, for messages."""
+        if self.british and key.startswith("color"):
+            key = key.replace("color", "colour", 1)
         return f"{self.file}: {self.prefix}{key}".removesuffix(".")
 
     def error(self, key: str, message: str) -> InputError:
@@ -918,6 +932,10 @@ class _Table:
     def value(self, key: str, default: object) -> Any:
         """The unchecked value of `key`."""
         self.known.add(key)
+        if key == "color" and "colour" in self.values:
+            if "color" in self.values:
+                raise self.error("colour", "and color cannot both be given")
+            self.values["color"], self.british = self.values.pop("colour"), True
         return self.values.get(key, default)
 
     def child(self, key: str, values: object) -> _Table:

@@ -3,18 +3,37 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from phong75.model.arrays import ArrayLike, Reals
 
+#: Rows that are computed at a time: arrays of so many stay in the processor's cache.
+BLOCK = 1 << 14
+
+
+def blocks(count: int) -> Iterator[slice]:
+    """Slices of at most BLOCK rows, of `count` rows in all."""
+    return (slice(begin, begin + BLOCK) for begin in range(0, count, BLOCK))
+
 
 def normalize(vectors: Reals) -> Reals:
-    """`vectors` (float64[..., 3]) scaled to unit length; the zero vector stays zero."""
-    # The largest component is scaled to 1 first, so that squares neither overflow nor underflow.
-    largest = np.max(np.abs(vectors), axis=-1, keepdims=True)
-    vectors = vectors / np.where(largest > 0, largest, 1.0)
-    length = np.sqrt(np.sum(vectors * vectors, axis=-1, keepdims=True))
-    return vectors / np.where(length > 0, length, 1.0)
+    """`vectors` (float[..., 3]) scaled to unit length, float64; the zero vector stays zero."""
+    rows = vectors.reshape(-1, 3)
+    result = np.empty(rows.shape)
+    for block in blocks(len(rows)):
+        # Component by component, because numpy reduces an axis of three at a tenth of the speed.
+        x, y, z = rows[block].T.astype(np.float64)
+        # The largest component is scaled to 1 first: squares neither overflow nor underflow.
+        largest = np.maximum(np.maximum(np.abs(x), np.abs(y)), np.abs(z))
+        divisor = np.where(largest > 0, largest, 1.0)
+        x, y, z = x / divisor, y / divisor, z / divisor
+        length = np.sqrt(x * x + y * y + z * z)
+        divisor = np.where(length > 0, length, 1.0)
+        for axis, component in enumerate((x, y, z)):
+            result[block, axis] = component / divisor
+    return result.reshape(vectors.shape)
 
 
 def apply_matrix(matrix: Reals, vectors: Reals) -> Reals:

@@ -9,6 +9,7 @@ from typing import Any
 
 from phong75.model.config import DEFAULT, TECHNIQUES
 from phong75.model.front import mesh_normals
+from phong75.model.front.mesh_files import materials
 from phong75.model.studies import corner_cases
 from phong75.model.studies.methods import CONFIGS
 from phong75.model.studies.shadings import FARTHEST_FACTOR
@@ -237,7 +238,6 @@ FIGURES: dict[str, Callable[[], str]] = {
     "prove.pairs": lambda: f"{sum(row['pairs'] for row in _record('prove')['power']) / 1e9:.0f}",
     "bound.ratio": lambda: tables.above(_certified_ratio(), 3),
     "bound.intensity": lambda: tables.above(facts.intensity_bound(), 4),
-    "bound.jump": lambda: tables.above(facts.jump()),
     "bound.mantissa": facts.mantissa_error,
     "bound.eight-lights": lambda: tables.above(_case("eight lights, n = 128", "bound_lsb")),
     "lights.error": lambda: tables.above(_lights_error()),
@@ -252,6 +252,12 @@ FIGURES: dict[str, Callable[[], str]] = {
     "mesh.time": facts.mesh_time,
     "mesh.crease": lambda: f"{mesh_normals.DEFAULT_CREASE:g}",
     "mesh.large": lambda: f"{mesh_normals.LARGE:g}",
+    "mesh.chamfer": lambda: f"{100 * facts.CHAMFER:g}",
+    "mesh.bend-area": lambda: f"{facts.chamfered_bend(by_area=True):.0f}",
+    "mesh.bend-angle": lambda: f"{facts.chamfered_bend(by_area=False):.0f}",
+    "mesh.d": lambda: f"{materials.AMBIENT_SHARE:g}",
+    "mesh.n": lambda: f"{materials.LEAST_N:g} to {materials.MOST_N:g}",
+    "mesh.entries": lambda: str(DEFAULT.materials),
     # of the records
     "cases": lambda: str(len(_record("stability")["rows"])),
     "power.n20": lambda: f"{_power_error(20):.2g}",

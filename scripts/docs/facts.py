@@ -10,6 +10,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import inspect
+import math
 import re
 from pathlib import Path
 
@@ -24,10 +25,11 @@ from phong75.model.config import TECHNIQUES, Config, Format
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
 from phong75.model.front.mesh_files import library
 from phong75.model.front.scene import SHAPES
+from phong75.model.front.vectors import normalize
 from phong75.model.reflectance import Power, curve_distance, curve_words
 from phong75.model.studies import corner_cases, light_places
 from phong75.model.studies.methods import points
-from phong75.scripts.docs.tables import above_digits, markdown
+from phong75.scripts.docs.tables import above, above_digits, markdown
 from phong75.scripts.export import documents
 from phong75.sim.elaborate import instances
 from phong75.sim.formal.proofs import PROOFS
@@ -197,13 +199,6 @@ def _frame(angle: float, n: float, weight=1.0) -> Frame:
     return Frame(1, 1, half_vector_codes(eye, C), False, (0, 0, 0), table, np.zeros(1, SPAN_DTYPE))
 
 
-def jump(n: float = 32) -> float:
-    """What a jump of W from 0 to 1 adds to the bound of a scene, LSB."""
-    step = np.where(np.arange(C.weight_points) < C.weight_points // 2, 0.0, 1.0)
-    jumping, even = (error_budget.bound_lsb(_frame(0.5, n, weight)) for weight in (step, 1.0))
-    return jumping - even
-
-
 def intensity_bound() -> float:
     """The bound in LSB of Gouraud and flat shading against the interpolated intensity."""
     return error_budget.bound_lsb(_frame(0.5, 1), TECHNIQUES["gouraud"])
@@ -324,6 +319,26 @@ def features() -> str:
     """The fields of Config that pruning decides on, and what a build lacks without each."""
     rows = ((f"`{row.feature}`", row.saves) for row in prune(_frame(1.0, 10.0))[1])
     return markdown(("field of `Config`", "without it go"), rows, left=2)
+
+
+#: The width of the chamfers in `chamfered_bend`, as a share of the distance from the middle of the
+#: box to its sides.
+CHAMFER = 0.05
+
+
+def chamfered_bend(by_area: bool) -> float:
+    """By how many degrees the side of a chamfered box would bend at its corners, if it did not keep
+    its own normal: the angle between that normal and the mean of the normals at the corner.
+
+    The side, two chamfers and the triangle at the corner of the box meet there. by_area: whether
+    a face counts by its angle times its area, or by its angle alone.
+    """
+    normals = normalize(np.array([(0, 0, 1), (1, 0, 1), (0, 1, 1), (1, 1, 1)], np.float64))
+    side, width = 2 * (1 - CHAMFER), np.sqrt(2) * CHAMFER
+    weight = np.array([90.0, 90.0, 90.0, 60.0])
+    if by_area:
+        weight *= (side**2, side * width, side * width, np.sqrt(3) / 4 * width**2)
+    return float(np.degrees(np.arccos(normalize(weight @ normals)[2])))
 
 
 def mesh_memory() -> str:

@@ -17,11 +17,13 @@ import struct
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
+
+import numpy as np
 
 from phong75.model.frame import InputError
 from phong75.model.front import notes
-from phong75.model.front.mesh_files.quantized import dequantize
+from phong75.model.front.mesh_files.quantized import dequantize, index_out_of_range
 
 #: Files with these suffixes are tested, feature by feature.
 TESTED_SUFFIXES = (".obj", ".ply", ".stl", ".glb", ".gltf", notes.OBJECT_SUFFIX)
@@ -69,6 +71,9 @@ class Prepared:
     lines: bool = False
 
 
+#: Bytes of text that are searched at a time: so many stay in the processor's cache.
+SCAN_BYTES = 1 << 18
+
 Data = bytes | mmap.mmap
 
 _NUMBER = re.compile(rb"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
@@ -101,9 +106,7 @@ _FEW_COORDINATES = re.compile(
 _VERTEX_LINE = re.compile(rb"\nv[nt]?[ \t][^\r\n]*")
 _POINT_FIRST = re.compile(rb"([ \t][-+]?)\.(?=\d)")
 _GROUPS = re.compile(rb"\n(s|usemtl)(?:[ \t]+([^\r\n]*))?(?=[\r\n]|\Z)")
-_TEXTURE_VERTEX = re.compile(rb"\nvt[ \t]")
 _TEXTURE_INDEX = re.compile(rb"\nf[ \t][^\n/]*+/-?\d")
-_LINES = re.compile(rb"\n[lp][ \t]")
 _CURVES = re.compile(rb"\n(?:cstype|curv|curv2|surf|bmat)[ \t]")
 
 
@@ -120,11 +123,13 @@ def _obj(name: str, data: Data, prepared: Prepared) -> None:
         text, changed = text.replace(b"\r", b"\n"), True
     if b"\\" in text:
         text, changed = re.sub(rb"\\\r?\n", b" ", text), True
-    if b"\n " in text or b"\n\t" in text:
+    begins, before_points = _scan(text)
+    if any(begin[:1] in (b" ", b"\t") for begin in begins):
         text, changed = re.sub(rb"\n[ \t]+", b"\n", text), True
-    if text.count(b"#") > text.count(b"\n#"):
+        begins, before_points = _scan(text)
+    if text.count(b"#") > sum(begins[begin] for begin in begins if begin[:1] == b"#"):
         text, changed = _COMMENT.sub(rb"\n\1", text), True
-    if any(mark in text for mark in (b" .", b"\t.", b"-.", b"+.")):
+    if before_points & set(b" \t-+"):
         # Assimp counts no number that begins with its decimal point.
         text, changed = _VERTEX_LINE.sub(_with_leading_zeros, text), True
     short = _FEW_COORDINATES.search(text)
@@ -135,19 +140,37 @@ def _obj(name: str, data: Data, prepared: Prepared) -> None:
             len(short.group().split()) - 1
         ]
         raise InputError(f"{name}: line {line}: vertex {number} has {count}")
-    if not _TEXTURE_VERTEX.search(text) and _TEXTURE_INDEX.search(text):
+    if b"/" in text and b"vt" not in begins and _TEXTURE_INDEX.search(text):
         # Assimp makes points of faces whose texture vertices are not there.
         text = re.sub(rb"(?<=\d)/-?\d+(?=/)", b"/", text)
         text, changed = re.sub(rb"([ \t]-?\d+)/-?\d+(?=\s)", rb"\1", text), True
         prepared.notes.append("indices of texture vertices, of which the file has none, left out")
-    prepared.normals, prepared.lines = b"\nvn" in text, bool(_LINES.search(text))
-    prepared.smoothing = any(m.group(1) == b"s" for m in _GROUPS.finditer(text))
+    prepared.normals = b"vn" in begins
+    prepared.lines = any(begin in begins for begin in (b"l ", b"l\t", b"p ", b"p\t"))
+    prepared.smoothing = any(begin in begins for begin in (b"s ", b"s\t", b"s\n", b"s\r"))
     if prepared.smoothing:
         text, changed = _GROUPS.sub(_group_marker(), text), True
-    if _CURVES.search(text):
+    if any(begin in begins for begin in (b"cs", b"cu", b"su", b"bm")) and _CURVES.search(text):
         prepared.unused.append("curves and surfaces (cstype)")
     if changed:
         prepared.content = text
+
+
+def _scan(text: bytes) -> tuple[dict[bytes, int], set[int]]:
+    """How many lines of `text` begin with each pair of bytes, and the bytes before points.
+
+    `text` begins with a line feed. A line of less than two bytes at its end does not count.
+    """
+    pairs, before = np.zeros(1 << 16, np.int64), np.zeros(1 << 8, np.int64)
+    for first in range(0, len(text), SCAN_BYTES):
+        data = np.frombuffer(text, np.uint8, min(SCAN_BYTES + 2, len(text) - first), first)
+        feed = np.flatnonzero(data[:-2] == ord("\n"))
+        begin = data.take(feed + 1).astype(np.int64) << 8 | data.take(feed + 2)
+        pairs += np.bincount(begin, minlength=len(pairs))
+        point = np.flatnonzero(data[1:] == ord("."))
+        before += np.bincount(data.take(point), minlength=len(before))
+    begins = {int(pair).to_bytes(2, "big"): int(pairs[pair]) for pair in np.flatnonzero(pairs)}
+    return begins, set(np.flatnonzero(before).tolist())
 
 
 def _group_marker() -> Callable[[re.Match[bytes]], bytes]:
@@ -261,7 +284,52 @@ def _ply(name: str, data: Data, prepared: Prepared) -> None:
         raise InputError(
             f"{name}: cut short: its header declares at least {least} bytes, {body} follow"
         )
+    if binary and not _lists_fit(bytes(text[end.end() :]), lines, counts):
+        raise InputError(f"{name}: cut short: its last list ends behind the file")
     prepared.materials = 0
+
+
+def _lists_fit(body: bytes, lines: list[list[bytes]], counts: dict[bytes, int]) -> bool:
+    """Whether all lists of a binary PLY file end within its `body`: Assimp reads on behind it.
+
+    lines: of the header, as words. counts: of the rows of each element. Types that the format does
+    not know are left to Assimp.
+    """
+    order: Literal["little", "big"] = "little"
+    rows: dict[bytes, list[list[int]]] = {element: [] for element in counts}
+    owner = b""
+    for line in lines:
+        if line[:1] == [b"format"] and b"binary_big_endian" in line:
+            order = "big"
+        elif line[:1] == [b"element"]:
+            owner = line[1]
+        elif line[:1] == [b"property"] and owner:
+            kinds = line[2:4] if line[1] == b"list" else line[1:2]
+            if not all(kind in _PLY_BYTES for kind in kinds):
+                return True
+            rows[owner].append([_PLY_BYTES[kind] for kind in kinds])
+    place = 0
+    for element, sizes in rows.items():
+        fixed, lists = sum(size[0] for size in sizes), [s for s in sizes if len(s) == 2]
+        if not lists:
+            place += fixed * counts[element]
+            continue
+        if len(lists) == 1:  # lists of one length, as most files have them
+            head = place + sum(size[0] for size in sizes[: sizes.index(lists[0])])
+            width, item = lists[0]
+            stride = fixed + item * int.from_bytes(body[head : head + width], order)
+            end = place + stride * counts[element]
+            heads = [body[k:end:stride] for k in range(head, head + width)]
+            if end <= len(body) and all(h == h[:1] * len(h) for h in heads):
+                place = end
+                continue
+        for _ in range(counts[element]):
+            for size in sizes:
+                if place + size[0] > len(body):
+                    return False
+                length = int.from_bytes(body[place : place + size[0]], order)
+                place += size[0] + (length * size[1] if len(size) == 2 else 0)
+    return place <= len(body)
 
 
 # -- STL -------------------------------------------------------------------------------------------
@@ -339,8 +407,12 @@ def _gltf(name: str, data: Data, prepared: Prepared) -> None:
 
 
 def _dequantized(name: str, root: dict[str, Any], binary: bytes) -> bool:
-    """As `dequantize`; raises InputError if the JSON is not built as glTF prescribes."""
+    """As `dequantize`; raises InputError if the JSON is not built as glTF prescribes, or if an
+    index is out of range."""
     try:
+        wrong = index_out_of_range(name, root, binary)
+        if wrong:
+            raise InputError(f"{name}: {wrong}")
         return dequantize(name, root, binary)
     except (AttributeError, KeyError, TypeError, ValueError, IndexError, OverflowError) as error:
         message = " ".join(f"{type(error).__name__} {error}".split())[:120]
@@ -356,6 +428,9 @@ def _gltf_content(name: str, text: bytes, prepared: Prepared) -> dict[str, Any]:
         raise InputError(f"{name}: malformed JSON: {message}") from None
     if not isinstance(root, dict):
         raise InputError(f"{name}: malformed glTF: no object at the top")
+    asset = root.get("asset")
+    if isinstance(asset, dict) and str(asset.get("version")).startswith("1"):
+        raise InputError(f"{name}: version {asset['version']} of glTF; only version 2 is read")
     for key in ("extensionsRequired", "extensionsUsed"):
         extensions = [str(e) for e in _list(root, key)]
         needed = [e for e in extensions if not HARMLESS.fullmatch(e)]

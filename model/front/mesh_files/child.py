@@ -27,7 +27,7 @@ import struct
 import sys
 import threading
 from array import array
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, NamedTuple
 
 #: Post-processing steps: split polygons into triangles; points, lines and triangles apart.
 TRIANGULATE, SORT_BY_PRIMITIVE = 0x8, 0x8000
@@ -159,6 +159,8 @@ class Files:
             if name not in self.missing:
                 self.missing.append(name)
             return None
+        found = os.path.basename(name)  # in another folder than where it was looked for first
+        self.missing = [other for other in self.missing if os.path.basename(other) != found]
         file = _File(*self._calls, None)
         address = ctypes.addressof(file)
         self._open[address] = file, handle, size
@@ -208,19 +210,37 @@ def load_library(path: str) -> ctypes.CDLL:
     assimp.aiImportFileExWithProperties.argtypes = [
         ctypes.c_char_p, _Uint, ctypes.POINTER(_FileSystem), _Pointer,
     ]  # fmt: skip
+    assimp.aiApplyPostProcessing.restype = ctypes.POINTER(_Scene)
+    assimp.aiApplyPostProcessing.argtypes = [ctypes.POINTER(_Scene), _Uint]
     assimp.aiGetErrorString.restype = ctypes.c_char_p
     return assimp
 
 
-def triangles(mesh: _Mesh) -> bytes | Any:
-    """Indices uint32[F, 3] of the faces with three corners, as an object with a buffer."""
-    count = mesh.face_count
-    if count <= MANY_FACES:
-        result = array("I")
-        for face in mesh.faces[:count]:
-            if face.count == 3:
-                result.extend((_Uint * 3).from_address(face.indices))
-        return result
+class Faces(NamedTuple):
+    """The faces of a mesh: the number of corners of each, and the vertices of all corners, uint32
+    in an array; whether all are triangles; the largest vertex, -1 without corners."""
+
+    corners: Any
+    vertices: Any
+    only_triangles: bool
+    largest: int
+
+
+def faces_of(mesh: _Mesh) -> Faces:
+    """The faces of `mesh`."""
+    if mesh.face_count > MANY_FACES:
+        return _many_faces_of(mesh)
+    corners, vertices = array("I"), array("I")
+    for face in mesh.faces[: mesh.face_count]:
+        corners.append(face.count)
+        if face.count:
+            vertices.extend((_Uint * face.count).from_address(face.indices))
+    only_triangles = all(size == 3 for size in corners)
+    return Faces(corners, vertices, only_triangles, max(vertices, default=-1))
+
+
+def _many_faces_of(mesh: _Mesh) -> Faces:
+    """The same with numpy."""
     import numpy as np
 
     class Memory:  # all of this process's memory as one array of words
@@ -230,11 +250,44 @@ def triangles(mesh: _Mesh) -> bytes | Any:
 
     memory = np.asarray(Memory())
     table = np.ctypeslib.as_array(ctypes.cast(mesh.faces, ctypes.POINTER(ctypes.c_uint64)),
-                                  (count, 2))  # fmt: skip
-    address = table[(table[:, 0] & 0xFFFFFFFF) == 3, 1]
-    first = (address.astype(np.int64) - 4) >> 2
+                                  (mesh.face_count, 2))  # fmt: skip
+    corners = table[:, 0].astype(np.uint32)
     # Assimp allocates the indices of each face by itself; only these words are read.
-    return np.stack([memory[first + corner] for corner in range(3)], axis=1)
+    first = (table[:, 1].astype(np.int64) - 4) >> 2
+    only_triangles = bool((corners == 3).all())
+    if only_triangles:
+        vertices = np.stack([memory[first + corner] for corner in range(3)], axis=1).reshape(-1)
+    else:
+        skipped = np.cumsum(corners, dtype=np.int64) - corners
+        total = int(skipped[-1]) + int(corners[-1])
+        vertices = memory[np.repeat(first - skipped, corners) + np.arange(total)]
+    return Faces(corners, vertices, only_triangles, int(vertices.max(initial=0)))
+
+
+def out_of_range(faces: Faces, count: int) -> str | None:
+    """The first face that refers to a vertex beyond the `count` of them; None if none does."""
+    place = 0
+    for face, size in enumerate(faces.corners if faces.largest >= count else ()):
+        for vertex in faces.vertices[place : place + size]:
+            if vertex >= count:
+                signed = ctypes.c_int32(int(vertex)).value  # -1 is shown as the file has it
+                return f"face {face} refers to vertex {signed}, but there are {count} vertices"
+        place += size
+    return None
+
+
+def triangles(faces: Faces) -> Any:
+    """The vertices of the faces with three corners."""
+    if faces.only_triangles:
+        return faces.vertices
+    if not isinstance(faces.corners, array):
+        return faces.vertices[(faces.corners == 3).repeat(faces.corners)]
+    result, place = array("I"), 0
+    for size in faces.corners:
+        if size == 3:
+            result.extend(faces.vertices[place : place + size])
+        place += size
+    return result
 
 
 def properties(material: _Material) -> dict[str, Any]:
@@ -279,8 +332,9 @@ def nodes(root: _Node) -> list[dict[str, Any]]:
     return result
 
 
-def contents(scene: _Scene, out: BinaryIO) -> dict[str, Any]:
-    """What `scene` holds, without its numbers, which go to `out`."""
+def contents(scene: _Scene, faces: list[Faces], out: BinaryIO) -> dict[str, Any]:
+    """What `scene` holds, without its numbers, which go to `out`. faces: those of each
+    mesh, none with more than three corners."""
 
     def write(address: int | None, components: int, count: int) -> bool:
         if address and count:
@@ -288,19 +342,18 @@ def contents(scene: _Scene, out: BinaryIO) -> dict[str, Any]:
         return bool(address)
 
     meshes = []
-    for pointer in scene.meshes[: scene.mesh_count]:
+    for pointer, own in zip(scene.meshes[: scene.mesh_count], faces, strict=True):
         mesh = pointer.contents
         count = mesh.vertex_count
-        faces = triangles(mesh) if mesh.face_count else b""
+        indices = triangles(own)
         write(mesh.vertices, 3, count)
         meshes.append({
             "name": mesh.name.text, "vertices": count, "material": mesh.material,
             "normals": write(mesh.normals, 3, count), "colours": write(mesh.colours[0], 4, count),
-            "faces": memoryview(faces).nbytes // 12, "other": mesh.face_count,
+            "faces": len(indices) // 3, "other": mesh.face_count - len(indices) // 3,
             "bones": mesh.bone_count, "morphs": mesh.morph_count,
         })  # fmt: skip
-        meshes[-1]["other"] -= meshes[-1]["faces"]
-        out.write(faces)
+        out.write(indices)
     return {
         "meshes": meshes,
         "nodes": nodes(scene.root.contents) if scene.root else [],
@@ -330,20 +383,32 @@ def main(
     if int(size) > LARGE_FILE:  # numpy loads while Assimp reads
         threading.Thread(target=importlib.import_module, args=("numpy",), daemon=True).start()
     scene = assimp.aiImportFileExWithProperties(
-        os.fsencode(name), TRIANGULATE | SORT_BY_PRIMITIVE, ctypes.byref(files.system), None
+        os.fsencode(name), 0, ctypes.byref(files.system), None
     )
-    missing = [os.fsdecode(file) for file in files.missing]
     if not scene:
-        return {"error": assimp.aiGetErrorString().decode(errors="replace"), "missing": missing}
+        return {"error": assimp.aiGetErrorString().decode(errors="replace")}
+    faces = []
+    for pointer in scene.contents.meshes[: scene.contents.mesh_count]:
+        faces.append(faces_of(pointer.contents))
+        # Assimp would read beyond its vertices when it splits the polygons.
+        wrong = out_of_range(faces[-1], pointer.contents.vertex_count)
+        if wrong:
+            return {"error": wrong}
+    if not all(own.only_triangles for own in faces):
+        scene = assimp.aiApplyPostProcessing(scene, TRIANGULATE | SORT_BY_PRIMITIVE)
+        if not scene:
+            return {"error": assimp.aiGetErrorString().decode(errors="replace")}
+        faces = [faces_of(p.contents) for p in scene.contents.meshes[: scene.contents.mesh_count]]
+    missing = [os.fsdecode(file) for file in files.missing]
     with os.fdopen(int(arrays), "wb") as out:
-        return contents(scene.contents, out) | {"missing": missing}
+        return contents(scene.contents, faces, out) | {"missing": missing}
 
 
 if __name__ == "__main__":
     try:
         answer = main(*sys.argv[1:])
     except MemoryError:
-        answer = {"error": "out of memory", "missing": []}
+        answer = {"error": "out of memory"}
     json.dump(answer, sys.stdout)
     sys.stdout.flush()
     os._exit(0)  # the end of the process frees everything at once

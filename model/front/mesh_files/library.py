@@ -82,50 +82,75 @@ def library_path() -> Path:
 
 def read_file(path: Path, prepared: Prepared) -> FileContents:
     """Read the file `path`. Raises InputError that names the file and what is wrong with it."""
-    with tempfile.TemporaryFile() as arrays:
-        answer = _run_child(path, prepared, arrays.fileno())
-        if "error" in answer:
-            raise InputError(f"{path}: {_reason(path, answer['error'])}")
-        numbers: bytes | mmap.mmap = b""
-        if os.fstat(arrays.fileno()).st_size:
-            numbers = mmap.mmap(arrays.fileno(), 0, access=mmap.ACCESS_READ)
-        return _contents(path, answer, numbers)
+    with Reading(path, prepared.size, prepared.content) as reading:
+        return reading.result()
 
 
-def _run_child(path: Path, prepared: Prepared, arrays: int) -> dict[str, Any]:
-    """The answer of the process that reads `path`. Its numbers go to the open file `arrays`."""
-    cpu_s = int(CPU_S + CPU_S_PER_BYTE * prepared.size)
-    memory = int(MEMORY + MEMORY_PER_BYTE * prepared.size)
-    with tempfile.TemporaryFile() as content, tempfile.TemporaryFile() as output:
-        if prepared.content is not None:
-            content.write(prepared.content)
-            content.flush()
+class Reading:
+    """A process that reads the file `path`, or `content` in its place. size: see `Prepared`.
+
+    At the end of the `with` block the process is ended and its files are closed.
+    """
+
+    def __init__(self, path: Path, size: int, content: bytes | None = None) -> None:
+        self.path = path
+        self.cpu_s = int(CPU_S + CPU_S_PER_BYTE * size)
+        self.memory = int(MEMORY + MEMORY_PER_BYTE * size)
+        self._arrays, self._content, self._output = (tempfile.TemporaryFile() for _ in range(3))
+        arrays, given = self._arrays.fileno(), -1
+        if content is not None:
+            self._content.write(content)
+            self._content.flush()
+            given = self._content.fileno()
         command = [
             sys.executable, "-I", "-S", str(CHILD),
-            str(library_path()), str(path), str(cpu_s), str(memory), str(prepared.size),
-            str(arrays), str(content.fileno() if prepared.content is not None else -1),
-            str(Path(np.__file__).parent.parent),
+            str(library_path()), str(path), str(self.cpu_s), str(self.memory), str(size),
+            str(arrays), str(given), str(Path(np.__file__).parent.parent),
         ]  # fmt: skip
-        process = subprocess.run(
-            command, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.DEVNULL,
-            pass_fds=(arrays, content.fileno()), check=False,
+        self._process = subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=self._output, stderr=subprocess.DEVNULL,
+            pass_fds=(arrays, self._content.fileno()),
         )  # fmt: skip
-        output.seek(0)
-        text = output.read()
-    if process.returncode == -signal.SIGXCPU or process.returncode == -signal.SIGKILL:
-        raise InputError(f"{path}: takes more than {cpu_s} s of processor time to read")
-    try:
-        answer = json.loads(text)
-    except ValueError:
-        answer = None
-    if process.returncode or not isinstance(answer, dict):
-        how = "ends without an answer"
-        if process.returncode < 0:
-            how = f"crashes (signal {-process.returncode}); the file may be cut short"
-        raise InputError(f"{path}: not a readable mesh: the reader {how}")
-    if "bad_alloc" in answer.get("error", "") or "out of memory" in answer.get("error", ""):
-        raise InputError(f"{path}: takes more than {memory / 2**30:.1f} GiB of memory to read")
-    return answer
+
+    def __enter__(self) -> Reading:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._process.kill()
+        self._process.wait()
+        for file in (self._arrays, self._content, self._output):
+            file.close()
+
+    def result(self) -> FileContents:
+        """What is in the file. Raises InputError that names the file and what is wrong with it."""
+        answer = self._answer()
+        if "error" in answer:
+            raise InputError(f"{self.path}: {_reason(self.path, answer['error'])}")
+        numbers: bytes | mmap.mmap = b""
+        if os.fstat(self._arrays.fileno()).st_size:
+            numbers = mmap.mmap(self._arrays.fileno(), 0, access=mmap.ACCESS_READ)
+        return _contents(self.path, answer, numbers)
+
+    def _answer(self) -> dict[str, Any]:
+        """The answer of the process, once it has ended. Raises InputError."""
+        path, code = self.path, self._process.wait()
+        self._output.seek(0)
+        text = self._output.read()
+        if code == -signal.SIGXCPU or code == -signal.SIGKILL:
+            raise InputError(f"{path}: takes more than {self.cpu_s} s of processor time to read")
+        try:
+            answer = json.loads(text)
+        except ValueError:
+            answer = None
+        if code or not isinstance(answer, dict):
+            how = "ends without an answer"
+            if code < 0:
+                how = f"crashes (signal {-code}); the file may be cut short"
+            raise InputError(f"{path}: not a readable mesh: the reader {how}")
+        if "bad_alloc" in answer.get("error", "") or "out of memory" in answer.get("error", ""):
+            gib = self.memory / 2**30
+            raise InputError(f"{path}: takes more than {gib:.1f} GiB of memory to read")
+        return answer
 
 
 def _reason(path: Path, error: str) -> str:
@@ -137,6 +162,8 @@ def _reason(path: Path, error: str) -> str:
     words = " ".join(error.split())[:200]
     if "no meshes" in words or "no data" in words:
         return "the mesh has no faces"
+    if words.startswith("face "):
+        return words
     return f"not a readable mesh: {words or 'no reason given'}"
 
 
@@ -157,12 +184,6 @@ def _contents(path: Path, answer: dict[str, Any], numbers: bytes | mmap.mmap) ->
         normals = take("<f4", count, 3) if mesh["normals"] else None
         colours = take("<f4", count, 4)[:, :3] if mesh["colours"] else None
         faces = take("<u4", mesh["faces"], 3)
-        if len(faces) and faces.max() >= count:
-            face, corner = np.argwhere(faces >= count)[0]
-            index = int(faces[face, corner].astype(np.int32))
-            raise InputError(
-                f"{path}: face {face} refers to vertex {index}, but there are {count} vertices"
-            )
         parts.append(FilePart(vertices, faces, normals, colours, mesh["material"]))
     nodes = [
         (np.array(node["matrix"], np.float64).reshape(4, 4), index)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -23,9 +24,11 @@ from phong75.model.front.mesh_files.checks import (
     diagnose_obj,
     prepare,
 )
-from phong75.model.front.mesh_files.library import FileContents, read_file
+from phong75.model.front.mesh_files.library import FileContents, Reading, read_file
 from phong75.model.front.mesh_files.materials import (
     AMBIENT_SHARE,
+    LEAST_N,
+    MOST_N,
     FileMaterial,
     Materials,
     file_material,
@@ -38,13 +41,17 @@ from phong75.model.front.mesh_normals import (
     measure,
 )
 from phong75.model.front.mesh_topology import Edges, bodies, weld
-from phong75.model.front.vectors import apply_matrix, normalize
+from phong75.model.front.vectors import apply_matrix, blocks, normalize
 
 #: All suffixes of files that the library opens.
 MESH_SUFFIXES = (*TESTED_SUFFIXES, *UNTESTED_SUFFIXES)
 
 #: The axis that points up; "y (guess)" for other suffixes. STL is the format of 3D printing.
 UP_AXES = {".stl": "z (guess)", ".glb": "y (as glTF prescribes)", ".gltf": "y (as glTF prescribes)"}
+
+#: An OBJ file of more bytes than this is read while its text is looked at. Few such files turn out
+#: to need a change, and are read once more.
+LARGE_TEXT = 1_000_000
 
 #: Colours of vertices are told apart in steps of 1/255, which is what most files store.
 COLOUR_STEPS = 255
@@ -67,9 +74,10 @@ class LoadedMesh:
 
 @dataclass
 class _Soup:
-    """The triangles of all placed parts: vertices float64[V, 3], faces int64[F, 3], normals
-    float64[F, 3, 3] or None (zero vectors where a part has none), colours float64[F, 3] or None
-    (-1 where a part has none), material int64[F], of the file."""
+    """The triangles of all placed parts: vertices float[V, 3], faces int64[F, 3], normals of the
+    vertices float[V, 3] or None (zero vectors where a part has none), colours of the vertices
+    float[V, 3] or None (-1 where a part has none), material int64[F], of the file. Numbers stay in
+    the file's 32 bits where no node moves them, which halves the memory."""
 
     vertices: Reals
     faces: Ints
@@ -81,14 +89,15 @@ class _Soup:
 @dataclass
 class _Surface:
     """Triangles with an area, and one vertex per point: vertices float64[V, 3], faces
-    int64[F, 3], their measures and edges; normals, colours, material as in `_Soup`."""
+    int64[F, 3], their measures and edges. soup: where they come from. corners: int64[F, 3], the
+    vertices of `soup`, of which several may be one point, with a normal and a colour each."""
 
     vertices: Reals
     faces: Ints
     measures: Measures
     edges: Edges
-    normals: Reals | None
-    colours: Reals | None
+    soup: _Soup
+    corners: Ints
     material: Ints
 
 
@@ -116,6 +125,13 @@ def load_mesh_file(path: str | Path, crease: float | None = None) -> LoadedMesh:
         content = notes.as_obj(notes.read_object(path))
         prepared = Prepared(len(content), content)
         contents = read_file(path.with_suffix(".obj"), prepared)
+    elif suffix == ".obj" and path.stat().st_size > LARGE_TEXT:
+        with Reading(path, path.stat().st_size) as reading:  # the other core looks at the text
+            prepared = prepare(path)
+            if prepared.content is None:
+                contents = reading.result()
+        if prepared.content is not None:
+            contents = read_file(path, prepared)
     else:
         prepared = prepare(path)
         contents = read_file(path, prepared)
@@ -126,13 +142,12 @@ def load_mesh_file(path: str | Path, crease: float | None = None) -> LoadedMesh:
         _check_obj(path, prepared, contents)
     report = _report(path, prepared, contents)
     surface = _surface(path, _place(path, contents), report)
-    open_mixed, twisted = _wind(surface, report)
     files_materials, groups = _file_materials(contents, prepared, suffix)
     smoothing = groups[surface.material] if prepared.smoothing and crease is None else None
-    normals = _normals(surface, crease, smoothing, report)
+    open_mixed, twisted, normals = _wind_and_normals(surface, crease, smoothing, report)
     two_sided = _two_sided(files_materials, surface.material, open_mixed, twisted, report)
     index, materials = _materials(
-        files_materials, surface.material, surface.colours, suffix, report
+        files_materials, surface.material, _face_colours(surface), suffix, report
     )
     mesh = Mesh(surface.vertices, surface.faces, normals, report.degenerate_triangles)
     return LoadedMesh(mesh, index, materials, two_sided, report)
@@ -151,9 +166,14 @@ def _report(path: Path, prepared: Prepared, contents: FileContents) -> MeshRepor
         notes=list(prepared.notes),
     )
     if contents.other:
-        report.unused.append(f"{contents.other} points and lines")
-    missing = [Path(name) for name in contents.missing]
-    report.notes += [f"{p.name} is not there" for p in missing if p.suffix.lower() == ".mtl"]
+        report.unused.append(
+            f"{contents.other} {'points and lines' if contents.other > 1 else 'point or line'}"
+        )
+    missing = dict.fromkeys(Path(name).name for name in contents.missing)
+    missing = [name for name in missing if name.lower().endswith(".mtl")]
+    if len(missing) > 1:  # Assimp looks for one of the file's own name when the named one is lost
+        missing = [name for name in missing if name != f"{path.stem}.mtl"]
+    report.notes += [f"{name} is not there" for name in missing]
     # Assimp writes a vertex of OBJ once for each corner, so that unused ones are gone.
     report.unused_vertices = None if suffix == ".obj" else _unused_vertices(contents)
     return report
@@ -170,16 +190,18 @@ def _surface(path: Path, soup: _Soup, report: MeshReport) -> _Surface:
     report.triangles = int(np.count_nonzero(good))
     report.degenerate_triangles = len(faces) - report.triangles
     if not report.triangles:
-        raise InputError(f"{path}: all {len(faces)} triangles are degenerate (no area)")
+        which = "the only triangle is" if len(faces) == 1 else f"all {len(faces)} triangles are"
+        raise InputError(f"{path}: {which} degenerate (no area)")
     if not report.degenerate_triangles:
-        return _Surface(vertices, faces, measures, edges, soup.normals, soup.colours, soup.material)
+        return _Surface(vertices, faces, measures, edges, soup, soup.faces, soup.material)
+    faces = faces[good]
     return _Surface(
         vertices,
-        faces[good],
+        faces,
         measures.take(good),
-        Edges.of(faces[good]),
-        None if soup.normals is None else soup.normals[good],
-        None if soup.colours is None else soup.colours[good],
+        Edges.of(faces),
+        soup,
+        soup.faces[good],
         soup.material[good],
     )
 
@@ -190,13 +212,17 @@ def _check_obj(path: Path, prepared: Prepared, contents: FileContents) -> None:
     Assimp leaves out a normal that is not there, and makes a point of a face with such a texture
     vertex. The search for the place takes long; only a file with traces of this is searched.
     """
-    lost = any(
-        part.normals is None or not np.any(part.normals, axis=1).all() for part in contents.parts
-    )
+    lost = any(part.normals is None or not _not_zero(part.normals).all() for part in contents.parts)
     if (contents.other and not prepared.lines) or (prepared.normals and lost):
         place = diagnose_obj(path)
         if place:
             raise InputError(f"{path}: {place}")
+
+
+def _not_zero(vectors: Reals) -> Flags:
+    """Which of `vectors` (float[n, 3]) have a component that is not 0: bool[n]."""
+    x, y, z = vectors.T
+    return (x != 0) | (y != 0) | (z != 0)
 
 
 def _named(text: str, others: list[str]) -> bool:
@@ -237,7 +263,7 @@ def _place(path: Path, contents: FileContents) -> _Soup:
     offset = 0
     for matrix, index in contents.nodes:
         part = contents.parts[index]
-        vertices = part.vertices.astype(np.float64)
+        vertices = part.vertices
         _check_vertices(path, vertices, part.faces)
         faces = part.faces.astype(np.int64)
         linear = matrix[:3, :3]
@@ -246,7 +272,7 @@ def _place(path: Path, contents: FileContents) -> _Soup:
         if moved:
             if not np.isfinite(matrix).all():
                 raise InputError(f"{path}: the matrix of a node is not finite")
-            vertices = apply_matrix(linear, vertices) + matrix[:3, 3]
+            vertices = apply_matrix(linear, vertices.astype(np.float64)) + matrix[:3, 3]
             _check_vertices(path, vertices, faces)
         if mirrored:
             faces = faces[:, ::-1]
@@ -255,19 +281,22 @@ def _place(path: Path, contents: FileContents) -> _Soup:
         all_materials.append(np.full(len(faces), part.material, np.int64))
         if with_normals:
             if part.normals is None:
-                all_normals.append(np.zeros((len(faces), 3, 3)))
+                all_normals.append(np.zeros_like(vertices))
             else:
-                normals = np.where(np.isfinite(part.normals), part.normals, 0.0).astype(np.float64)
+                normals = part.normals
+                finite = np.isfinite(normals)
+                if not finite.all():
+                    normals = np.where(finite, normals, 0)
                 if moved:  # the cofactors are the inverse transpose times the determinant
                     rows = linear[[1, 2, 0]], linear[[2, 0, 1]]
                     cofactors = np.cross(*rows) * (-1.0 if mirrored else 1.0)
-                    normals = apply_matrix(cofactors, normals)
-                all_normals.append(normals[faces])
+                    normals = apply_matrix(cofactors, normals.astype(np.float64))
+                all_normals.append(normals)
         if with_colours:
             if part.colours is None:
-                all_colours.append(np.full((len(faces), 3), -1.0))
+                all_colours.append(np.full((len(vertices), 3), -1.0))
             else:
-                all_colours.append(part.colours[faces].astype(np.float64).mean(axis=1))
+                all_colours.append(part.colours.astype(np.float64))
         offset += len(vertices)
     return _Soup(
         _joined(all_vertices),
@@ -299,8 +328,8 @@ def _weld(soup: _Soup) -> tuple[Reals, Ints]:
         vertices = vertices[used]
     label, first = weld(vertices)
     if len(first) == len(vertices):
-        return vertices, faces
-    return vertices[first], label[faces]
+        return vertices.astype(np.float64), faces
+    return vertices.take(first, axis=0).astype(np.float64), label.take(faces)
 
 
 def _wind(surface: _Surface, report: MeshReport) -> tuple[Flags, Flags]:
@@ -316,25 +345,25 @@ def _wind(surface: _Surface, report: MeshReport) -> tuple[Flags, Flags]:
     sign = np.where(turned, -1.0, 1.0)
     decided = np.zeros(count, bool)  # bodies whose normals tell which side is outside
     reverse: Flags = np.zeros(count, bool)
-    if surface.normals is not None:
-        flat = surface.measures.normal[:, None, :]
-        agreement = surface.measures.area * sign * np.sum(flat * surface.normals, axis=(1, 2))
+    if surface.soup.normals is not None:
+        agreement = surface.measures.area * sign * _agreement(surface)
         decided = np.bincount(body, np.abs(agreement), count) > 0
         reverse = np.bincount(body, agreement, count) < 0
     # A body is closed if none of its edges is a border, or shared by more than two faces.
-    single = np.repeat(edges.uses != 2, edges.uses)
     is_open = np.zeros(count, bool)
-    is_open[body[edges.half[single] // 3]] = True
+    single = edges.uses != 2
+    if single.any():
+        is_open[body[edges.half[np.repeat(single, edges.uses)] // 3]] = True
     is_open[body[parts.twisted]] = True
     closed = ~is_open & ~decided
     if closed[body].any():
-        origin = vertices[faces[body, 0]]
-        a, b, c = (vertices[faces[:, i]] - origin for i in range(3))
-        triple = (
-            a[:, 0] * (b[:, 1] * c[:, 2] - b[:, 2] * c[:, 1])
-            + a[:, 1] * (b[:, 2] * c[:, 0] - b[:, 0] * c[:, 2])
-            + a[:, 2] * (b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])
+        corners = [np.ascontiguousarray(column) for column in faces.T]
+        origin = corners[0].take(body)
+        (ax, bx, cx), (ay, by, cy), (az, bz, cz) = (
+            [column.take(corner) - column.take(origin) for corner in corners]
+            for column in np.ascontiguousarray(vertices.T)
         )
+        triple = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
         volume = np.bincount(body, sign * triple, count)
         reverse = np.where(closed, volume < 0, reverse)
     turned = turned ^ reverse[body]
@@ -342,10 +371,7 @@ def _wind(surface: _Surface, report: MeshReport) -> tuple[Flags, Flags]:
         surface.faces = np.where(turned[:, None], faces[:, ::-1], faces)
         surface.measures = surface.measures.turned(turned)
         surface.edges = Edges.of(surface.faces)
-        if surface.normals is not None:
-            surface.normals = np.where(
-                turned[:, None, None], surface.normals[:, ::-1], surface.normals
-            )
+        surface.corners = np.where(turned[:, None], surface.corners[:, ::-1], surface.corners)
 
     members = np.bincount(body, minlength=count)
     mixed = np.bincount(body, parts.turned, count) > 0
@@ -355,35 +381,67 @@ def _wind(surface: _Surface, report: MeshReport) -> tuple[Flags, Flags]:
     return (mixed & is_open & ~decided)[body], parts.twisted
 
 
-def _normals(
-    surface: _Surface, crease: float | None, smoothing: Ints | None, report: MeshReport
-) -> Reals:
-    """The unit normals of all corners, float64[F, 3, 3]: the file's, else made here."""
+def _agreement(surface: _Surface) -> Reals:
+    """The sum of the cosines between each triangle's normal and the file's normals of its corners,
+    float64[F], times the length of the file's normals."""
+    assert surface.soup.normals is not None
+    columns = np.ascontiguousarray(surface.soup.normals.T)
+    result = np.zeros(len(surface.corners))
+    for block in blocks(len(result)):
+        for column, flat in zip(columns, surface.measures.normal, strict=True):
+            for corner in np.ascontiguousarray(surface.corners[block].T):
+                result[block] += flat[block] * column.take(corner)
+    return result
 
-    def made(angle: float) -> Reals:
-        report.crease = angle
-        return corner_normals_of(
+
+def _face_colours(surface: _Surface) -> Reals | None:
+    """The mean colour of the corners of each triangle, float64[F, 3]; None without colours."""
+    colours = surface.soup.colours
+    return None if colours is None else colours.take(surface.corners, axis=0).mean(axis=1)
+
+
+def _wind_and_normals(
+    surface: _Surface, crease: float | None, smoothing: Ints | None, report: MeshReport
+) -> tuple[Flags, Flags, Reals]:
+    """What `_wind` returns, and the unit normals of all corners, float64[F, 3, 3]: the file's,
+    else made here. The other core makes normals while this one winds the faces; they are made again
+    if faces were turned."""
+    angle = DEFAULT_CREASE if crease is None else crease
+    given = None if crease is not None else surface.soup.normals
+    usable = None if given is None else _not_zero(given)
+    missing = surface.corners.size
+    if usable is not None:
+        missing = 0 if usable.all() else int(np.count_nonzero(~usable[surface.corners]))
+    vertices, faces, measures, edges = (
+        surface.vertices, surface.faces, surface.measures, surface.edges
+    )  # fmt: skip
+
+    def make() -> Reals:
+        return corner_normals_of(vertices, faces, measures, edges, angle, smoothing)
+
+    made: Reals = np.zeros((0, 3, 3))
+    with ThreadPoolExecutor(1) as other_core:
+        later = other_core.submit(copy_context().run, make) if missing else None
+        wound = _wind(surface, report)
+        if later:
+            made = later.result()
+    if missing and surface.faces is not faces:
+        made = corner_normals_of(
             surface.vertices, surface.faces, surface.measures, surface.edges, angle, smoothing
         )
-
-    normals = surface.normals
-    if normals is not None and crease is None:
-        usable = np.any(normals != 0, axis=-1)
-        missing = int(np.count_nonzero(~usable))
-        if missing < usable.size:
-            report.normals, report.corners_made = "of the file", missing
-            normals = normalize(normals)
-            if not missing:
-                return normals
-            return np.where(usable[..., None], normals, made(DEFAULT_CREASE))
-    angle = DEFAULT_CREASE if crease is None else crease
-    report.corners_made = 3 * len(surface.faces)
+    report.corners_made = missing
+    report.crease = angle if missing else None
+    if given is not None and usable is not None and missing < surface.corners.size:
+        report.normals = "of the file"
+        normals = normalize(given).take(surface.corners, axis=0)
+        if missing:
+            normals = np.where(usable[surface.corners][..., None], normals, made)
+        return *wound, normals
     report.normals = f"made here, crease {angle:g} degrees"
-    result = made(angle)
     if smoothing is not None:
         report.normals = "made here, by the smoothing groups of the file"
         report.crease = None if (smoothing >= 0).all() else angle
-    return result
+    return *wound, made
 
 
 def _file_materials(
@@ -420,6 +478,15 @@ def _two_sided(
     return result
 
 
+def _numbered(key: Ints) -> tuple[Ints, Ints]:
+    """As `np.unique` of `key` (int64[n], 0 or more) with the inverse; small keys are not sorted."""
+    if key.max() >= len(key):
+        kinds, index = np.unique(key, return_inverse=True)
+        return kinds, index.reshape(-1)
+    there = np.bincount(key) > 0
+    return np.flatnonzero(there), (np.cumsum(there) - 1).take(key)
+
+
 def _materials(
     materials: list[FileMaterial], material: Ints, colours: Reals | None, suffix: str,
     report: MeshReport,
@@ -427,7 +494,7 @@ def _materials(
     """The material of each triangle, int64[F] (-1: none), and the materials of the file."""
     defined = np.array([m.defined for m in materials] or [False])
     base = np.array([m.colour for m in materials] or [(1.0, 1.0, 1.0)])
-    in_use = np.unique(material)
+    in_use = np.flatnonzero(np.bincount(material))
     undefined = {materials[i].name for i in in_use if i < len(materials) and not defined[i]}
     undefined -= {"", "DefaultMaterial"}
     report.notes += [f"material {name} is not defined" for name in sorted(undefined)]
@@ -438,7 +505,8 @@ def _materials(
     if any(m.clipped for m in seen):
         clipped = sum(m.clipped for m in seen)
         report.notes.append(
-            f"n of {clipped} material{'s' * (clipped > 1)} limited to the range 1 to 128"
+            f"n of {clipped} material{'s' * (clipped > 1)} limited to the range "
+            f"{LEAST_N:g} to {MOST_N:g}"
         )
 
     key = np.where(defined[material], material, -1) + 1
@@ -450,7 +518,7 @@ def _materials(
         shade = np.nan_to_num(np.clip(shade, 0.0, 1.0))
         code = np.rint(shade * COLOUR_STEPS).astype(np.int64) @ np.array([1 << 16, 1 << 8, 1])
         key = key | np.where(coloured, code + 1, 0) << 32
-    kinds, index = np.unique(key, return_inverse=True)
+    kinds, index = _numbered(key)
     code, which = (kinds >> 32) - 1, (kinds & 0xFFFFFFFF) - 1
     own = [materials[i] if i >= 0 else None for i in which]
     colour = np.where(
@@ -465,7 +533,7 @@ def _materials(
         [m.w if m else 0.4 for m in own],
     )
     nothing = (code < 0) & (which < 0)  # the first kind, if it occurs at all
-    index = index.reshape(-1) - int(nothing.any())
+    index = index - int(nothing.any())
     table = table.take(np.flatnonzero(~nothing))
     report.materials = len(table)
     return index, table

@@ -26,6 +26,9 @@ from phong75.model.arrays import Ints, Reals
 #: d of materials from files: formats have no such share, or a value that few writers set with care.
 AMBIENT_SHARE = 0.15
 
+#: The range of n, to which exponents of files are limited.
+LEAST_N, MOST_N = 1.0, 128.0
+
 #: Rounds of moving each material of a reduced table to the mean of what it stands for.
 ROUNDS = 8
 
@@ -57,7 +60,7 @@ class Materials:
         """K materials from lists of numbers, limited to the ranges of eq. (3)."""
         colour = np.clip(np.asarray(colour, np.float64).reshape(-1, 3), 0.0, 1.0)
         d, n, w = (np.asarray(v, np.float64).reshape(-1) for v in (d, n, w))
-        return cls(colour, np.clip(d, 0, 1), np.clip(n, 1, 128), np.clip(w, 0, 1))
+        return cls(colour, np.clip(d, 0, 1), np.clip(n, LEAST_N, MOST_N), np.clip(w, 0, 1))
 
     @classmethod
     def join(cls, several: list[Materials]) -> Materials:
@@ -86,7 +89,7 @@ class FileMaterial:
     """One material of a file: Cp, n and W of eq. (3), and what eq. (3) has no place for.
 
     defined: whether the file says anything of the material. two_sided, opacity: as in the file.
-    clipped: whether n was outside 1 to 128.
+    clipped: whether n was outside the range.
     """
 
     name: str
@@ -123,7 +126,7 @@ def file_material(said: dict[str, Any], defined: bool, has_sides: bool) -> FileM
         exponent = _number(said, "$mat.shininess")
         shines = exponent > 0 and said.get("$mat.illum", [2])[0] >= 2
         w = max(_colour(said.get("$clr.specular", [0.0] * 3))) if shines else 0.0
-    n = min(max(exponent, 1.0), 128.0)
+    n = min(max(exponent, LEAST_N), MOST_N)
     return FileMaterial(
         name,
         colour,

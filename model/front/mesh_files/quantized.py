@@ -4,7 +4,7 @@
 Assimp 6 copies such numbers as if they were floats. Here they become floats: c / (2^(b-1) - 1) for
 normalized signed integers of b bits but not below -1, c / (2^b - 1) for unsigned ones, and c itself
 where they are not normalized (glTF 2.0, section 3.11, and the extension's text). The floats go into
-a further buffer, which is written into the JSON itself.
+a further buffer, which is written into the JSON itself. Indices of vertices are checked here, too.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from __future__ import annotations
 import base64
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 
 import numpy as np
 
@@ -61,6 +62,37 @@ def dequantize(name: str, root: dict[str, Any], binary: bytes | memoryview) -> b
     uri = "data:application/octet-stream;base64," + base64.b64encode(blob).decode()
     root["buffers"].append({"byteLength": len(blob), "uri": uri})
     return True
+
+
+def index_out_of_range(name: str, root: dict[str, Any], binary: bytes | memoryview) -> str | None:
+    """The first index of a mesh that refers to no vertex, in words; None if none does.
+
+    Assimp leaves out the triangles of such indices without a word. Arguments and errors as for
+    `dequantize`; what cannot be found is left to Assimp.
+    """
+    accessors = root.get("accessors") or []
+    for number, mesh in enumerate(root.get("meshes") or []):
+        for primitive in mesh.get("primitives") or []:
+            indices = primitive.get("indices")
+            position = (primitive.get("attributes") or {}).get("POSITION")
+            if indices is None or position is None:
+                continue
+            accessor, count = accessors[indices], int(accessors[position]["count"])
+            kind = _KINDS.get(accessor["componentType"], "")
+            if "u" not in kind or "bufferView" not in accessor or "sparse" in accessor:
+                continue
+            try:
+                view, many = root["bufferViews"][accessor["bufferView"]], int(accessor["count"])
+                vertex = _numbers(name, root, binary, view, accessor, np.dtype(kind), many, 1)
+            except ValueError:
+                continue
+            if vertex.max() >= count:
+                place = int(np.argmax(vertex[:, 0] >= count))
+                return (
+                    f"mesh {number}: index {place} refers to vertex {vertex[place, 0]}, "
+                    f"but there are {count} vertices"
+                )
+    return None
 
 
 def _values(
@@ -120,7 +152,7 @@ def _buffer(name: str, buffer: dict[str, Any], binary: bytes | memoryview) -> by
         return binary
     if uri.startswith("data:"):
         return base64.b64decode(uri.partition(",")[2], validate=True)
-    path = Path(name).parent / uri
+    path = Path(name).parent / unquote(uri)
     if not path.is_file():
         raise ValueError(f"{uri} is not there")
     return path.read_bytes()
