@@ -471,8 +471,8 @@ def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Confi
     ambient = root.triple("ambient", WHITE, 0.0, MOST_LIGHT)
     exposure = _exposure(root, materials, lights, ambient, remarks)
     remarks += [
-        f"{light.name}: the eye of an orthographic camera has no place; distances along the line of "
-        "sight are measured from the scene's nearest point"
+        f"{light.name}: the eye of an orthographic camera has no place; distances along the line "
+        "of sight are measured from the scene's nearest point"
         for light in lights if light.place.along and light.place.falloff
     ]  # fmt: skip
     root.finish()

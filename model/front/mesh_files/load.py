@@ -169,8 +169,8 @@ def _report(path: Path, prepared: Prepared, contents: FileContents) -> MeshRepor
         report.unused.append(
             f"{contents.other} {'points and lines' if contents.other > 1 else 'point or line'}"
         )
-    missing = dict.fromkeys(Path(name).name for name in contents.missing)
-    missing = [name for name in missing if name.lower().endswith(".mtl")]
+    names = dict.fromkeys(Path(name).name for name in contents.missing)
+    missing = [name for name in names if name.lower().endswith(".mtl")]
     if len(missing) > 1:  # Assimp looks for one of the file's own name when the named one is lost
         missing = [name for name in missing if name != f"{path.stem}.mtl"]
     report.notes += [f"{name} is not there" for name in missing]
