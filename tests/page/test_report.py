@@ -129,7 +129,8 @@ def build(tmp_path_factory):
     ]  # fmt: skip
     (build / "stability").mkdir()
     (build / "stability" / "report.json").write_text(json.dumps({
-        "schema": report.STABILITY, "rows": [case, bad], "errors": errors, "amm_2012_at_20": 0.00141,
+        "schema": report.STABILITY, "rows": [case, bad], "errors": errors,
+        "amm_2012_at_20": 0.00141,
         "powers": [{"n": 20, "codes": 4, "max_error": 1e-5, "at_versine": 0, "bound": 2e-5}],
     }))  # fmt: skip
     return build
