@@ -19,6 +19,7 @@ from phong75.model.analysis import error_budget
 from phong75.model.studies import adversarial, aligned
 from phong75.scripts import console, recorded
 from phong75.scripts.console import Steps
+from phong75.scripts.docs.tables import above
 from phong75.sim.design import BUILD
 
 
@@ -51,8 +52,8 @@ def main(record: bool) -> int:
         shown.append(found | {"family": family.name, "bound_lsb": bound})
         table.add_row(
             family.name, f"{found['error_lsb']:.4f}",
-            f"{before['error_lsb']:.4f}" if before else "–", f"{bound:.4f}",
-            f"{of['certified_lsb']:.4f}",
+            f"{before['error_lsb']:.4f}" if before else "–", above(bound, 4),
+            above(of["certified_lsb"], 4),
         )  # fmt: skip
     folder = BUILD / "stability"
     folder.mkdir(parents=True, exist_ok=True)

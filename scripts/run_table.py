@@ -6,6 +6,8 @@ from __future__ import annotations
 from rich.markup import escape
 from rich.table import Table
 
+from phong75.scripts.docs.tables import above
+
 
 def table(report: dict) -> Table:
     """`report` as a table for the terminal."""
@@ -60,7 +62,7 @@ def table(report: dict) -> Table:
             "largest error",
             f"{error['max_lsb']:.4f} LSB "
             + ("[yellow]the bound exceeds 1[/]" if wide else verdict(error["max_lsb"] <= bound)),
-            f"derived bound {bound:.4f}; perfect: ½",
+            f"derived bound {above(bound, 4)}; perfect: ½",
         )
     if report["undecided"]:
         rows.add_row(

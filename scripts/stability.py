@@ -23,6 +23,7 @@ from phong75.model.studies import adversarial, corner_cases
 from phong75.model.studies.methods import CONFIGS, PORTS_OF_DEFAULT
 from phong75.scripts import console, recorded
 from phong75.scripts.console import Steps
+from phong75.scripts.docs.tables import above
 from phong75.sim.design import BUILD
 from phong75.sim.frame import corner_cases as simulated
 
@@ -142,7 +143,7 @@ class CaseTable:
             table.add_row(
                 "[green]ok[/]" if good else "[bold red]FAILED[/]", escape(row["case"]), *expected,
                 count(row["pixels"]), count(row["mismatches"]), number(row["max_lsb"]),
-                number(row["bound_lsb"]),
+                bound(row["bound_lsb"]),
             )  # fmt: skip
         return table
 
@@ -160,8 +161,8 @@ def error_table(rows: list[dict]) -> Table:
         table.add_column(title, justify="left" if title == "inputs" else "right", no_wrap=True)
     for row in rows:
         table.add_row(
-            row["family"], number(row["bound_lsb"]), number(row["scenes_lsb"]),
-            number(row["adversarial_lsb"]), number(row["adversarial_bound_lsb"]),
+            row["family"], bound(row["bound_lsb"]), number(row["scenes_lsb"]),
+            number(row["adversarial_lsb"]), bound(row["adversarial_bound_lsb"]),
         )  # fmt: skip
     return table
 
@@ -179,6 +180,11 @@ def power_table(rows: list[dict]) -> Table:
 def number(value: float | None) -> str:
     """An error in LSB with four digits; a dash where there is none."""
     return "–" if value is None else f"{value:.4f}"
+
+
+def bound(value: float | None) -> str:
+    """A bound in LSB, rounded up to four digits; a dash where there is none."""
+    return "–" if value is None else above(value, 4)
 
 
 def count(value: int | None) -> str:

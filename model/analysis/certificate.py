@@ -77,6 +77,9 @@ LARGEST = SLACK / 4
 #: pi/2, rounded up.
 RIGHT_ANGLE = math.nextafter(math.pi / 2, 2)
 
+#: How near a bound comes to that of a single input, relative to what that has beyond 1/2 LSB.
+NEAR = 0.015
+
 #: Fields of `Config` that the derivation holds for, with their values.
 COVERED = {
     "technique": ("phong",), "normal_method": ("normalize", "dot_first"),
@@ -393,7 +396,8 @@ def search(
     """Bound the error of all inputs in `boxes`.
 
     The box with the largest bound is halved until that bound is at most `target`, or at most `gap`
-    above the bound of a single input, both in LSB. Raises NoBoundError.
+    above the bound of a single input, both in LSB; or above that by the share `NEAR` of what it has
+    beyond 1/2. Raises NoBoundError.
     """
     heap: list[tuple[float, Box]] = []
     count, point, at = 0, 0.5, boxes[0].middle()
@@ -410,7 +414,7 @@ def search(
     largest = 0.5
     while heap:
         largest, box = -heap[0][0], heap[0][1]
-        if largest <= max(target, point + gap):
+        if largest <= max(target, point + max(gap, NEAR * (point - 0.5))):
             break
         middle = box.middle()
         error = bound(middle)
