@@ -17,6 +17,7 @@ from phong75.model.config import MAX_JUMPS, TECHNIQUES
 from phong75.model.frame import InputError, distance_range, falloff_codes, fitted, with_lights
 from phong75.model.front.camera import light_frame
 from phong75.model.front.scene import Light, load_scene
+from phong75.model.front.scene_to_spans import make_frame
 from phong75.model.places import (
     MOST_TURN,
     Falloff,
@@ -53,6 +54,22 @@ def scene_of(text: str, folder, size=(64, 48)):
         "material = { color = [0.6, 0.4, 0.3], n = 20, W = 0.4 }\n"
     )
     return load_scene(path, size)
+
+
+@pytest.mark.parametrize("point", ["centre", "vertex"])
+def test_where_flat_shading_takes_the_intensity(point, tmp_path):
+    scene = scene_of(f'flat_point = "{point}"\n[light]\nposition = [0.2, -0.4, 1.0]', tmp_path)
+    given = []
+
+    def shader(normal, material, frame, exact, config, points):
+        given.append(points)
+        return np.zeros_like(normal), np.zeros_like(normal)
+
+    make_frame(scene, TECHNIQUES["flat"], shader)
+    mesh = scene.objects[0].mesh
+    corners = mesh.vertices[mesh.faces] @ light_frame(scene.light, scene.camera.axes[2])[0].T
+    want = corners.mean(axis=1) if point == "centre" else corners[:, 0]
+    np.testing.assert_allclose(given[0], np.repeat(want, 3, axis=0), atol=1e-15)
 
 
 # -- geometry --------------------------------------------------------------------------------------

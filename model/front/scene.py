@@ -12,6 +12,7 @@ value. model/scenes/*.toml are examples. Only `shape` or `mesh` is required. All
     interpolation = "linear"        # as in the paper; or "normalized_edges", or "quadratic",
                                     # "quadratic_vlachos", "quadratic_exact" (`mid_edge_normals`)
     shading = "smooth"              # of objects that do not say; "flat": one normal per face
+    flat_point = "centre"           # flat technique: of a triangle; or "vertex", its first one
 
     ambient = [1.0, 1.0, 1.0]       # Ia, light without a direction
     exposure = 1.0                  # factor of all intensities; or "Imax": no channel saturates
@@ -118,6 +119,8 @@ DEFAULT_SIZE = (640, 480)
 DEFAULT_BACKGROUND = (0.05, 0.06, 0.08)
 INTERPOLATIONS = ("linear", "normalized_edges", *mid_edge_normals.RULES)
 SHADINGS = ("smooth", "flat")
+#: Where a triangle's intensity is taken by the flat technique: at its centre, or at its first vertex.
+FLAT_POINTS = ("centre", "vertex")
 
 SHAPES: dict[str, Callable[..., Mesh]] = {
     "sphere": shapes.sphere,
@@ -273,6 +276,7 @@ class Scene:
     remarks: list[str] = field(default_factory=list)
     toward_light: bool = False
     lit_faces_only: bool = False
+    flat_point: str = "centre"
 
     def __post_init__(self) -> None:
         self.lights = self.lights or [Light(self.light)]
@@ -445,6 +449,7 @@ def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Confi
     lit_faces_only = root.boolean("lit_faces_only", False)
     interpolation = root.choice("interpolation", INTERPOLATIONS, "linear")
     shading = root.choice("shading", SHADINGS, "smooth")
+    flat_point = root.choice("flat_point", FLAT_POINTS, "centre")
     materials: list[Material] = []
     indices: dict[str | None, int] = {}
     for name, table in root.tables_by_name("materials"):
@@ -492,6 +497,7 @@ def _scene(root: _Table, path: Path, size: tuple[int, int] | None, config: Confi
         remarks,
         toward_light,
         lit_faces_only,
+        flat_point,
     )
 
 

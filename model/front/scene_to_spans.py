@@ -409,7 +409,9 @@ def _triangles(
     place = apply_matrix(frame_axes, points)
     centre = np.repeat(place.mean(axis=1, keepdims=True), 3, axis=1)
     if config.technique != "phong":
-        seen = centre if config.technique == "flat" else place
+        seen = place
+        if config.technique == "flat":
+            seen = centre if scene.flat_point == "centre" else np.repeat(place[:, :1], 3, axis=1)
         both = shade_vertices(
             value.reshape(-1, 3), np.repeat(material, 3), frame, exact, config, seen.reshape(-1, 3)
         )
