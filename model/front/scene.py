@@ -119,7 +119,7 @@ DEFAULT_SIZE = (640, 480)
 DEFAULT_BACKGROUND = (0.05, 0.06, 0.08)
 INTERPOLATIONS = ("linear", "normalized_edges", *mid_edge_normals.RULES)
 SHADINGS = ("smooth", "flat")
-#: Where a triangle's intensity is taken by the flat technique: at its centre, or at its first vertex.
+#: Where the flat technique takes the intensity of a triangle: at its centre or its first vertex.
 FLAT_POINTS = ("centre", "vertex")
 
 SHAPES: dict[str, Callable[..., Mesh]] = {
