@@ -635,6 +635,7 @@ def _places(
     wild = frame(120, 9, lights)
     if falls:
         wild.depths[:, ::7, 1] = C.depth.max
+        wild.spans["step"][::14, 0] = C.normal.max  # a normal leaves its word with a distance
     jobs = [
         SimJob(most), SimJob(most, idle=100, stall=64, seed=SEED), SimJob(pixel), SimJob(wild),
         SimJob(most, stop_after=170, stall=100), SimJob(pixel, reset_first=True, idle=90),

@@ -247,6 +247,8 @@ FIGURES: dict[str, Callable[[], str]] = {
     "curve.equal": lambda: f"{facts.equal_distance(128):.1f}",
     "toon.undecided": lambda: _undecided("toon"),
     "configurations": lambda: str(len(CONFIGS)),
+    "facets.longest": lambda: str(facts.facets()[0]),
+    "facets.shortest": lambda: f"{facts.facets()[1]:.2f}",
     "warnock.farthest": lambda: f"{100 * FARTHEST_FACTOR:g}",
     "mesh.memory": facts.mesh_memory,
     "mesh.time": facts.mesh_time,

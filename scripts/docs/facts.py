@@ -24,11 +24,13 @@ from phong75.model.config import DEFAULT as C
 from phong75.model.config import TECHNIQUES, Config, Format
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
 from phong75.model.front.mesh_files import library
-from phong75.model.front.scene import SHAPES
+from phong75.model.front.scene import SHAPES, load_scene
 from phong75.model.front.vectors import normalize
 from phong75.model.reflectance import Power, curve_distance, curve_words
+from phong75.model.scene_to_frame import front_end
 from phong75.model.studies import corner_cases, light_places
-from phong75.model.studies.methods import points
+from phong75.model.studies.methods import FRAMES, points
+from phong75.model.twin.core.span_walker import pixel_count, span_walker
 from phong75.scripts.docs.tables import above, above_digits, markdown
 from phong75.scripts.export import documents
 from phong75.sim.elaborate import instances
@@ -313,6 +315,17 @@ def mantissa_error() -> str:
     power = math.floor(math.log10(bound))
     digits = str(-power).translate(str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹"))
     return f"{above(bound / 10**power)}·10⁻{digits}"
+
+
+@functools.cache
+def facets() -> tuple[int, float]:
+    """Of the sweep's octahedron: pixels of its longest span, and length of its shortest normal."""
+    scene, size, _ = FRAMES[-1]
+    spans = front_end(load_scene(scene, size)).frame.spans
+    walked = span_walker(spans, 0, pixel_count(spans), C)
+    start, step = (spans[name][walked.span] for name in ("start", "step"))
+    normals = C.normal.real(start + walked.k[:, None] * step)
+    return int(spans["length"].max()), float(np.linalg.norm(normals, axis=1).min())
 
 
 def features() -> str:

@@ -285,6 +285,9 @@ def _benchmark(found: dict[str, Any]) -> list[tuple[str, str, str]]:
         ("the numpy model, 640×480 lit pixels",
          f"{found['model_frames_per_s']:.0f} frames/s on one core",
          "one machine; the pixel stages only"),
+        *([("the compiled twin, as a multiple of the numpy twin",
+            number(found["compiled_to_numpy"], 1), "one machine")]
+          if "compiled_to_numpy" in found else []),
         *[(f"reading a {suffix.upper()} file of a million triangles, normals made",
            f"{grouped(rate)} triangles/s", "one machine") for suffix, rate in rates.items()],
     ]  # fmt: skip

@@ -426,7 +426,8 @@ def precision_plots(rows: list[dict]) -> dict[str, dict]:
     Over run time, open marks are configurations whose clock is stated while others are measured.
     """
     routed = any(row["clock_source"] != "stated" for row in rows)
-    methods = list(dict.fromkeys(row["method"] for row in rows))
+    names = list(dict.fromkeys(row["method"] for row in rows))
+    perfect = methods.perfect() if rows else {}
     plots = {}
     for cost, cost_title in COSTS.items():
         for error, error_title in ERRORS.items():
@@ -443,7 +444,7 @@ def precision_plots(rows: list[dict]) -> dict[str, dict]:
                 )
             ]  # fmt: skip
             mixed = cost == "frame_us" and routed
-            for k, method in enumerate(methods):
+            for k, method in enumerate(names):
                 shape = SHAPES[(k // 2 + k) % len(SHAPES)]
                 curve = sorted(((r, x, y) for r, x, y in at if r["method"] == method),
                                key=lambda p: -p[2])  # fmt: skip
@@ -463,7 +464,7 @@ def precision_plots(rows: list[dict]) -> dict[str, dict]:
             plots[f"{cost}/{error}"] = figure(
                 traces, xaxis=_axis(cost_title, True), yaxis=_axis(error_title, True),
                 hovermode="closest",
-                **_level("perfect rounding", methods.perfect().get(error), log=True),
+                **_level("perfect rounding", perfect.get(error), log=True),
             )  # fmt: skip
     return plots
 

@@ -58,7 +58,9 @@ def _jumps(rng, fmt) -> np.ndarray:
     amount = rng.integers(0, C.coefficient.one // 2, shape)
     extreme = rng.choice([0, 1, C.coefficient.one, C.coefficient.max], shape)
     amount = np.where(rng.random(shape) < 0.3, extreme, amount)
-    return np.stack([rng.integers(0, 2, shape), threshold, amount], axis=-1)
+    jumps = np.stack([rng.integers(0, 2, shape), threshold, amount], axis=-1)
+    jumps[-1] = 1, 0, C.coefficient.max  # the largest sum: all apply everywhere
+    return jumps
 
 
 def _jump_writes(jumps, fmt) -> tuple[np.ndarray, ...]:
