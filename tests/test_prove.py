@@ -251,6 +251,17 @@ def test_a_slice_of_the_search(row):
         assert found.bound_lsb <= target and found.boxes < 30_000
 
 
+def test_the_methods_are_certified_above_what_is_seen():
+    rows = recorded.figures("prove-methods")["methods"]
+    assert tuple(row["name"] for row in rows) == prove.METHODS
+    seen = {row["name"]: row["max_lsb"] for row in recorded.figures("stability")["methods"]}
+    swept = recorded.figures("sweep")["configurations"]
+    for row in rows:
+        constant, most = row["constant_lsb"] or np.inf, row["any_lsb"] or np.inf
+        assert 0.59 < constant < most or most == np.inf
+        assert seen[row["name"]] <= most and swept[row["name"]]["port_max_lsb"] <= most
+
+
 # -- broken designs --------------------------------------------------------------------------------
 
 NARROWER = [
