@@ -311,6 +311,16 @@ def test_a_narrower_word_breaks_a_certified_bound(change):
     assert broken
 
 
+@pytest.mark.parametrize("row", KEPT["families"][1:], ids=lambda row: row["family"])
+def test_words_of_a_bit_less_fail(row):
+    """Even if their powers were exact."""
+    config = CONFIGS["width_17"]
+    exact = dict.fromkeys(exhausted.WHOLE_PARTS, (0.0, 0.0))
+    found = Stages(exhausted.root_errors(config), exact)
+    bound = lsb(ErrorBound(config, found, row["steep"]), worst(row), config)
+    assert prove.beyond([row | {"certified_lsb": bound}])
+
+
 # -- the command -----------------------------------------------------------------------------------
 
 
