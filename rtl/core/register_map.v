@@ -140,10 +140,11 @@ module register_map #(
       wire unused = &{1'b0, code, step, n, half, ONE, VANISHES};
     end else begin : gen_check
       localparam [COEFFICIENT_BITS-1:0] COEFFICIENT_ONE = 1 << `PHONG_COEFFICIENT_FRACTION;
+      localparam [COEFFICIENT_BITS+1:0] END_ONE = 1 << `PHONG_COEFFICIENT_FRACTION;
       localparam [EXPONENT_BITS-1:0] MOST = 128 << EXPONENT_FRACTION;
 
       // W at the right end of an interval, in two's complement.
-      wire [COEFFICIENT_BITS+1:0] end_code = {2'b0, code} + {step[COEFFICIENT_BITS], step};
+      wire signed [COEFFICIENT_BITS+1:0] end_code = $signed({1'b0, code}) + $signed(step);
 
       // The flag is not timing critical. Three register stages: classify the word and its target,
       // compare with what is missing, OR.
@@ -174,7 +175,7 @@ module register_map #(
         other_diffuse[1] <= code != `PHONG_CONSTANT_DIFFUSE_GREEN;
         other_diffuse[2] <= code != `PHONG_CONSTANT_DIFFUSE_BLUE;
         above_one <= code > COEFFICIENT_ONE;
-        other_end <= end_code > {2'b0, COEFFICIENT_ONE};  // also an end below 0
+        other_end <= end_code > END_ONE;  // END_ONE has no sign, so also an end below 0
         other_power <= (n < ONE) | (n > MOST);
         to_x <= write_half_x;
         to_z <= write_half_z;
