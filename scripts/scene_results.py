@@ -36,8 +36,8 @@ CLOCK_HZ = 200e6
 #: with its colour.
 OLDER_SHOWN = "lamps"
 
-#: The stalls of the second run of a technique: of 256 cycles, in how many no span is offered, and in
-#: how many no pixel is taken (see `FrameTB.run`).
+#: The stalls of the second run of a technique: of 256 cycles, in how many no span is offered, and
+#: in how many no pixel is taken (see `FrameTB.run`).
 STALLS = {"idle": 64, "stall": 100, "seed": 75}
 
 

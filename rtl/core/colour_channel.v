@@ -139,7 +139,7 @@ module colour_channel #(
           .in (ambient),
           .out(ambient_p2)
       );
-    end else begin : gen_no_environment
+    end else begin : gen_no_ambient
       assign ambient_p2 = {COEFFICIENT_BITS{1'b0}};
     end
   endgenerate

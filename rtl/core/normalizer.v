@@ -146,8 +146,8 @@ module normalizer (
   wire [3*MANTISSA_BITS-1:0] scaled_in;     // operands of the products with 1/|m|
 
   generate
-    if (DOT_FIRST) begin : gen_across
-      wire [2*MANTISSA_BITS-1:0] parts;  // {cross_xz, cross_y}
+    if (DOT_FIRST) begin : gen_cross
+      wire [2*MANTISSA_BITS-1:0] crossed;  // {cross_xz, cross_y}
 
       half_vector_cross #(
           .VECTOR_BITS(MANTISSA_BITS),
@@ -160,16 +160,16 @@ module normalizer (
           .x(mantissas_p7[MANTISSA_BITS-1:0]),
           .y(mantissas_p7[MANTISSA_BITS+:MANTISSA_BITS]),
           .z(mantissas_p7[2*MANTISSA_BITS+:MANTISSA_BITS]),
-          .cross_xz(parts[MANTISSA_BITS+:MANTISSA_BITS]),
-          .cross_y(parts[MANTISSA_BITS-1:0])
+          .cross_xz(crossed[MANTISSA_BITS+:MANTISSA_BITS]),
+          .cross_y(crossed[MANTISSA_BITS-1:0])
       );
 
       delay #(
           .BITS  (2 * MANTISSA_BITS),
           .CYCLES(ROOT_WAIT - `PHONG_HALF_VECTOR_CROSS_LATENCY)
-      ) u_parts (
+      ) u_crossed (
           .clk(clk),
-          .in (parts),
+          .in (crossed),
           .out(scaled_in[2*MANTISSA_BITS-1:0])
       );
 

@@ -114,8 +114,8 @@ def build(tmp_path_factory):
     row = {"scene": "sphere", "size": "160×120", "pixels": 9000, "spans": 500, "cycles": 9075,
            "fps": 22000.0, "mismatches": 0, "max_lsb": 0.5, "bound_lsb": 0.55}  # fmt: skip
     (build / "results.json").write_text(json.dumps(
-        {"schema": 2, "fps": 30, "clock_hz": 200e6, "cycles_available": 6_666_666, "rows": [row],
-         "techniques": TECHNIQUES_RUN}
+        {"schema": report.RESULTS, "fps": 30, "clock_hz": 200e6, "cycles_available": 6_666_666,
+         "rows": [row], "techniques": TECHNIQUES_RUN}
     ))  # fmt: skip
     case = {"case": "a case", "extreme": "much", "expected": "well", "pixels": 5, "max_lsb": 0.5,
             "bound_lsb": 0.6, "mismatches": 0, "zero_normals": 1, "failures": [],
@@ -129,7 +129,8 @@ def build(tmp_path_factory):
     ]  # fmt: skip
     (build / "stability").mkdir()
     (build / "stability" / "report.json").write_text(json.dumps({
-        "schema": 2, "rows": [case, bad], "errors": errors, "amm_2012_at_20": 0.00141,
+        "schema": report.STABILITY, "rows": [case, bad], "errors": errors,
+        "amm_2012_at_20": 0.00141,
         "powers": [{"n": 20, "codes": 4, "max_error": 1e-5, "at_versine": 0, "bound": 2e-5}],
     }))  # fmt: skip
     return build
