@@ -34,8 +34,8 @@ UNITS = (1, 2, 4, 8)
 #: in the one light's frame, or a value that each light has for itself.
 ONE_LIGHT_ONLY = (
     "normal_order", "interpolate_x", "interpolate_y", "interpolate_z", "constant_shift",
-    "idle_step_bits", "hold_unlit", "constant_half_vector", "constant_exponent", "constant_weight",
-    "constant_ambient", "constant_diffuse",
+    "idle_step_bits", "hold_unlit", "check_writes", "constant_half_vector", "constant_exponent",
+    "constant_weight", "constant_ambient", "constant_diffuse",
 )  # fmt: skip
 
 
@@ -162,6 +162,8 @@ class Config:
         if self.power_method == "curve" and self.constant_exponent:
             raise ValueError("constant_exponent is for powers, not for power_method `curve`")
         reflectance = self.power_method == "curve" or self.weight_jumps
+        if reflectance and self.check_writes:
+            raise ValueError("check_writes is for powers, and for W without jumps")
         if reflectance and self.normal_method == "quadratic_spans":
             raise ValueError("normal_method `quadratic_spans` has neither curves nor jumps")
         if self.attenuation and (self.curve_jumps or self.weight_jumps):
@@ -264,6 +266,7 @@ class Config:
     idle_material_bits: int = 0  # top bits of material, x and y that are 0
     idle_x_bits: int = 0
     idle_y_bits: int = 0
+    check_writes: bool = False  # values outside what is legal are flagged (see docs/interface.md)
     hold_unlit: bool = False  # pixels that face away from the light toggle nothing (never pruned)
     constant_half_vector: tuple[int, ...] = constants("x", "z")  # hz is 0 or more
     constant_exponent: tuple[int, ...] = constants("n")  # of all materials

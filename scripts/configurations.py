@@ -35,6 +35,7 @@ def _groups() -> dict[str, dict[str, Config]]:
         "older techniques": older,
         "with less built in": {n: c for n, c in by_hand.items() if n not in older},
         "with more built in": {
+            "check_writes": dataclasses.replace(DEFAULT, name="check_writes", check_writes=True),
             "hold_unlit": dataclasses.replace(DEFAULT, name="hold_unlit", hold_unlit=True),
             "quadratic_normals": dataclasses.replace(
                 DEFAULT, name="quadratic_normals", normal_order=2

@@ -27,7 +27,7 @@ from phong75.model.front.scene import load_scene
 from phong75.model.reflectance import segments
 from phong75.model.registers import address_bits, writes
 from phong75.model.scene_to_frame import front_end
-from phong75.model.spans import bent_beyond, illegal_spans, turns
+from phong75.model.spans import MAX_EXPONENT, bent_beyond, illegal_spans, turns
 from phong75.model.studies.methods import CONFIGS
 from phong75.model.studies.random_frames import placed, random_frame, random_lights
 from phong75.model.twin.core.register_map import unsupported_write, vanishing_exponent
@@ -340,6 +340,9 @@ def odd_writes(frame: Frame, config: Config, seed: int) -> list[tuple[int, int]]
     constants = (getattr(config, feature) for feature in pruning.FEATURES)
     mask = (1 << C.coefficient.bits + 1) - 1
     values += [int(v) & mask for c in constants if isinstance(c, tuple) for v in c]
+    if config.check_writes:
+        most = MAX_EXPONENT * one
+        values += [C.coefficient.one, C.coefficient.one + 1, most, most + 1]
     above = 1 << C.coefficient.bits + 1
     random_writes = []
     for address in rng.permutation(2 * kind).tolist():
@@ -387,6 +390,16 @@ def _hold() -> ConfigurationTest:
         spans["step"][11:15:2] = 0
     jobs = SimJob(frame), SimJob(single), SimJob(single, idle=100, stall=64, seed=SEED)
     return ConfigurationTest(config, *jobs, full=C)
+
+
+def _checked() -> ConfigurationTest:
+    config, frame = dataclasses.replace(C, name="checked", check_writes=True), plain()
+    assert not any(unsupported_write(*word, config) for word in writes(frame, config))
+    odd = [odd_writes(frame, config, SEED + k) for k in range(3)]
+    assert all(50 < sum(unsupported_write(*word, config) for word in words) for words in odd)
+    return ConfigurationTest(
+        config, SimJob(frame), *(SimJob(frame, writes=words) for words in odd), full=C
+    )
 
 
 def narrow() -> tuple[Frame, Config]:
@@ -745,6 +758,7 @@ CONFIGURATION_TESTS: dict[str, Callable[[], ConfigurationTest]] = {
     "default": _default,
     **{name: functools.partial(_alone, name) for name in ALONE},
     "hold_unlit": _hold,
+    "check_writes": _checked,
     "quadratic": _quadratic,
     "quadratic still": _quadratic_still,
     "narrow": lambda: _of(*narrow()),

@@ -251,6 +251,17 @@ def test_a_slice_of_the_search(row):
         assert found.bound_lsb <= target and found.boxes < 30_000
 
 
+def test_the_methods_are_certified_above_what_is_seen():
+    rows = recorded.figures("prove-methods")["methods"]
+    assert tuple(row["name"] for row in rows) == prove.METHODS
+    seen = {row["name"]: row["max_lsb"] for row in recorded.figures("stability")["methods"]}
+    swept = recorded.figures("sweep")["configurations"]
+    for row in rows:
+        constant, most = row["constant_lsb"] or np.inf, row["any_lsb"] or np.inf
+        assert 0.59 < constant < most or most == np.inf
+        assert seen[row["name"]] <= most and swept[row["name"]]["port_max_lsb"] <= most
+
+
 # -- broken designs --------------------------------------------------------------------------------
 
 NARROWER = [
@@ -298,6 +309,16 @@ def test_a_narrower_word_breaks_a_certified_bound(change):
         if lsb(ErrorBound(config, found, row["steep"]), worst(row), config) > row["certified_lsb"]
     ]  # fmt: skip
     assert broken
+
+
+@pytest.mark.parametrize("row", KEPT["families"][1:], ids=lambda row: row["family"])
+def test_words_of_a_bit_less_fail(row):
+    """Even if their powers were exact."""
+    config = CONFIGS["width_17"]
+    exact = dict.fromkeys(exhausted.WHOLE_PARTS, (0.0, 0.0))
+    found = Stages(exhausted.root_errors(config), exact)
+    bound = lsb(ErrorBound(config, found, row["steep"]), worst(row), config)
+    assert prove.beyond([row | {"certified_lsb": bound}])
 
 
 # -- the command -----------------------------------------------------------------------------------

@@ -33,6 +33,8 @@ module register_map #(
     parameter CHANNELS        = `PHONG_CHANNELS,         // 3: red, green, blue; 1: grey
     parameter TWO_SIDED       = `PHONG_TWO_SIDED,        // |Zn| in place of Zn
 
+    parameter CHECK_WRITES    = `PHONG_CHECK_WRITES,     // 1: flag values that are not legal
+
     // constants of the build; 0: written at run time
     parameter CONSTANT_HALF_VECTOR = `PHONG_CONSTANT_HALF_VECTOR,    // h of all frames
     parameter CONSTANT_X           = `PHONG_CONSTANT_HALF_VECTOR_X,  // s0.17
@@ -62,7 +64,8 @@ module register_map #(
     output reg [MATERIAL_BITS+INDEX_BITS-1:0] table_address,   // {material, interval or field}
     output reg [2*COEFFICIENT_BITS:0]         table_word,      // write_word, one cycle later
 
-    output wire unsupported  // one-cycle pulse: a word needs what this build leaves out
+    // one-cycle pulse: a word needs what this build leaves out, or with CHECK_WRITES is not legal
+    output wire unsupported
 );
 
   localparam [INDEX_BITS-1:0] AMBIENT_RED = `PHONG_FIELD_AMBIENT;  // u1.16, then green, blue
@@ -132,10 +135,17 @@ module register_map #(
     if (SPECULAR && POWER_FUNCTION && POWER_BYPASS && LOG_OCTAVES && WEIGHT_FUNCTION && DIFFUSE
         && AMBIENT && CHANNELS == 3 && TWO_SIDED && !CONSTANT_HALF_VECTOR
         && !CONSTANT_EXPONENT && !CONSTANT_WEIGHT && !CONSTANT_AMBIENT
-        && !CONSTANT_DIFFUSE) begin : gen_everything
+        && !CONSTANT_DIFFUSE && !CHECK_WRITES) begin : gen_everything
       assign unsupported = 1'b0;
       wire unused = &{1'b0, code, step, n, half, ONE, VANISHES};
     end else begin : gen_check
+      localparam [COEFFICIENT_BITS-1:0] COEFFICIENT_ONE = 1 << `PHONG_COEFFICIENT_FRACTION;
+      localparam [COEFFICIENT_BITS+1:0] END_ONE = 1 << `PHONG_COEFFICIENT_FRACTION;
+      localparam [EXPONENT_BITS-1:0] MOST = 128 << EXPONENT_FRACTION;
+
+      // W at the right end of an interval, in two's complement.
+      wire signed [COEFFICIENT_BITS+1:0] end_code = $signed({1'b0, code}) + $signed(step);
+
       // The flag is not timing critical. Three register stages: classify the word and its target,
       // compare with what is missing, OR.
       reg nonzero_word, nonzero_code, nonzero_step, is_one, is_small, asks_two_sided;
@@ -143,7 +153,8 @@ module register_map #(
       reg [2:0] other_ambient, other_diffuse;
       reg to_x, to_z, to_n, to_control, to_weight;
       reg [2:0] to_ambient, to_diffuse;
-      reg [11:0] missing;
+      reg above_one, other_end, other_power;
+      reg [12:0] missing;
       reg flagged;
 
       always @(posedge clk) begin
@@ -163,6 +174,9 @@ module register_map #(
         other_diffuse[0] <= code != `PHONG_CONSTANT_DIFFUSE_RED;
         other_diffuse[1] <= code != `PHONG_CONSTANT_DIFFUSE_GREEN;
         other_diffuse[2] <= code != `PHONG_CONSTANT_DIFFUSE_BLUE;
+        above_one <= code > COEFFICIENT_ONE;
+        other_end <= end_code > END_ONE;  // END_ONE has no sign, so also an end below 0
+        other_power <= (n < ONE) | (n > MOST);
         to_x <= write_half_x;
         to_z <= write_half_z;
         to_n <= write_exponent & (SPECULAR != 0);  // without highlight n has no effect
@@ -185,6 +199,9 @@ module register_map #(
             | (CONSTANT_WEIGHT != 0) & to_weight & other_w;
         missing[10] <= (CONSTANT_AMBIENT != 0) & |(to_ambient & other_ambient);
         missing[11] <= (CONSTANT_DIFFUSE != 0) & |(to_diffuse & other_diffuse);
+        missing[12] <= (CHECK_WRITES != 0)
+            & ((|to_ambient | |to_diffuse | to_weight) & above_one | to_weight & other_end
+            | to_n & other_power);
         flagged <= |missing;
       end
 

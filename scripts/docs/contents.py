@@ -195,6 +195,10 @@ TABLES: dict[str, Callable[[], str]] = {
     "quadratic-normals": lambda: tables.quadratic_normals(_record("tessellation")),
     "error-families": lambda: tables.error_families(_record("stability")["errors"]),
     "method-cases": lambda: tables.method_cases(_record("stability")["methods"]),
+    "certified-methods": lambda: tables.certified_methods(
+        _record("prove-methods")["methods"],
+        {steep: _certified(128, steep) for steep in (False, True)},
+    ),
     "certified": lambda: tables.certified(_record("prove")["families"]),
     "cases": lambda: tables.cases(_record("stability")["rows"], facts.case_words()),
     "powers": lambda: tables.powers(_record("stability")["powers"]),

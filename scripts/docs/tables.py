@@ -676,6 +676,17 @@ def method_cases(rows: Iterable[dict[str, Any]]) -> str:
     return markdown(header, cells)
 
 
+def certified_methods(rows: Iterable[dict[str, Any]], default: dict[bool, float]) -> str:
+    """Certified bounds of the methods. default: {any W: that of the default}."""
+    found = [{"name": "default", "constant_lsb": default[False], "any_lsb": default[True]}, *rows]
+    cells = (
+        (f"`{row['name']}`", *(above(row[key], 3) if row[key] else DASH
+                               for key in ("constant_lsb", "any_lsb")))
+        for row in found
+    )  # fmt: skip
+    return markdown(("configuration", "W constant, LSB", "any W, LSB"), cells)
+
+
 def powers(rows: Iterable[dict[str, Any]]) -> str:
     """The error of cos(s)^n alone."""
     cells = (

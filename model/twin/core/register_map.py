@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from phong75.model.config import Config
 from phong75.model.registers import FIELDS
+from phong75.model.spans import MAX_EXPONENT
 from phong75.model.twin.reflectance.reflectance_map import reflectance_map
 
 
@@ -42,12 +43,15 @@ def register_map(address: int, config: Config) -> Destination:
 def unsupported_write(address: int, word: int, built: Config) -> bool:
     """Whether the RTL of `built` flags a write of `word` to `address` as unsupported.
 
-    Flagged is a word that asks for what `built` leaves out, or that differs from a constant of
-    `built`. The techniques without registers are not covered.
+    Flagged is a word that asks for what `built` leaves out, that differs from a constant of
+    `built`, or with `check_writes` that is not legal. The techniques without registers are not
+    covered.
     """
     if built.technique != "phong" or not reflectance_map(address, built).plain:
         return False
     to = register_map(address, built)
+    if built.check_writes and _illegal(to, word, built):
+        return True
     if to.name == "weight":
         return _unsupported_weight(word, built)
     if to.name in ("half_x", "half_z"):
@@ -67,6 +71,21 @@ def unsupported_write(address: int, word: int, built: Config) -> bool:
             bool(codes) and code != codes[to.entry]
         )
     return False
+
+
+def _illegal(to: Destination, word: int, built: Config) -> bool:
+    """Whether `word` holds a coefficient or a point of W above 1 or below 0, or an n below 1 or
+    above 128."""
+    one, code = built.coefficient.one, word & built.coefficient.max
+    if to.name == "weight":
+        bits = built.coefficient.bits + 1
+        step = word >> built.coefficient.bits & (1 << bits) - 1
+        step -= step >> (bits - 1) << bits
+        return code > one or not 0 <= code + step <= one
+    if to.name == "exponent":
+        n = word & built.exponent.max
+        return built.specular and not built.exponent.one <= n <= MAX_EXPONENT * built.exponent.one
+    return to.name in ("ambient", "diffuse") and code > one
 
 
 def _unsupported_weight(word: int, built: Config) -> bool:
