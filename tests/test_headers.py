@@ -18,7 +18,7 @@ MODULES = [*design.sources(), *sorted(design.ECP5.glob("*.v"))]
 MACROS = {
     "phong_pipeline": ("pixel", 3), "phong_unit": ("pixel", 0), "pixel_fifo": ("pixel", 0),
     "flat_unit": ("intensity_code", 0), "gouraud_unit": ("intensity_code", 0),
-    "slope_multiplier": ("narrow_multiplier", 0),
+    "slope_multiplier": ("narrow_multiplier", 0), "specular_factors": ("power", 0),
 }  # fmt: skip
 
 
