@@ -85,7 +85,7 @@ async def a_reset_flags_nothing(dut, clocks):
     for _ in range(clocks):
         await tb.step()
     assert tb.zero_at and tb.illegal_at
-    await tb.reset(1)
+    await tb.reset(1 + clocks % 3)  # also for as long as the turns of a pixel
     for _ in range(120):
         await tb.step()
     assert not tb.zero_at and not tb.illegal_at, f"{tb.zero_at}, {tb.illegal_at} after a reset"
