@@ -36,6 +36,12 @@ SPAN_DTYPE = np.dtype(
 )
 
 
+def walked(spans: Spans) -> Ints:
+    """How many pixels the hardware makes of each of `spans` (SPAN_DTYPE[n]), int64[n]: its length,
+    and 1 of a span of length 0."""
+    return np.maximum(spans["length"], 1).astype(np.int64)
+
+
 class InputError(Exception):
     """The user's input is wrong; the message is one line that says where and how."""
 
@@ -156,7 +162,7 @@ class Frame:
     falloff: Ints | None = None
 
     def __repr__(self) -> str:
-        pixels = int(np.maximum(self.spans["length"], 1).sum())
+        pixels = int(walked(self.spans).sum())
         lights = f", lights: {self.lights}" if self.further else ""
         return (
             f"Frame({self.width}x{self.height}, spans: {len(self.spans)}, pixels: {pixels}{lights})"

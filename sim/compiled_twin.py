@@ -20,8 +20,9 @@ from phong75.model.arrays import Ints
 from phong75.model.config import DEFAULT, Config
 from phong75.model.dataflow import cpp
 from phong75.model.dataflow.trace import Program, arguments, trace
-from phong75.model.frame import Frame, fitted, with_lights
+from phong75.model.frame import Frame, fitted, walked, with_lights
 from phong75.model.twin import Pixels
+from phong75.model.twin.core.span_walker import pixel_count
 from phong75.sim import build
 from phong75.sim.build import silent
 
@@ -40,7 +41,7 @@ class CompiledTwin:
         seconds. Raises BuildError, InputError (see `trace`)."""
         self.config, self.lights = config, lights
         self.program: Program = trace(config, lights)
-        text = cpp.source(self.program, config.coordinate_bits)
+        text = cpp.source(self.program)
         key = build.digest(text, *CXX_FLAGS)
         self.library: Path = build.BUILD / "compiled" / f"{config.name}-{key}.so"
         with build.locked(self.library):
@@ -64,17 +65,15 @@ class CompiledTwin:
         memories = [np.ascontiguousarray(given[name], np.int64) for name in self.program.memories]
         scalars = np.array([given[name] for name in self.program.scalars], np.int64)
         spans = frame.spans
-        length = np.maximum(spans["length"], 1).astype(np.int64)
+        length = walked(spans)
         end = np.cumsum(length)
-        total = int(end[-1]) if len(end) else 0
+        total = pixel_count(spans)
         column, codes = np.empty(total, np.int64), np.empty((total, 3), np.int64)
         pointers = (ctypes.c_void_p * max(1, len(memories)))(*map(_address, memories))
         self._shade(
-            pointers, _address(scalars), _address(length),
-            _address(first := spans["x"].astype(np.int64)), ctypes.c_int64(len(spans)),
+            pointers, _address(scalars), _address(length), ctypes.c_int64(len(spans)),
             _address(column), _address(codes),
         )  # fmt: skip
-        del first
         last = np.zeros(total, bool)
         last[end - 1] = spans["last"]
         return Pixels(column, np.repeat(spans["y"].astype(np.int64), length), codes, last)

@@ -16,7 +16,7 @@ import numpy as np
 from phong75.model import places
 from phong75.model.arrays import ArrayLike, Ints, Reals, Spans
 from phong75.model.config import DEFAULT, Config
-from phong75.model.frame import ExactFrame, Frame
+from phong75.model.frame import ExactFrame, Frame, walked
 from phong75.model.reflectance import Curve, curve_value, power_words, weight_value
 
 #: W of cos(i), or what stands in place of cos(s)**n as a function of cos(s), at pixels: float64[n]
@@ -126,7 +126,7 @@ def _pixels(spans: Spans, start: Reals, step: Reals, bend: Reals) -> tuple[Reals
     start, step, bend: float64[spans, 3], value at the first pixel, change to the second, and growth
     of that change per pixel: Newton's forward differences of a parabola.
     """
-    span, k = _span_of_pixels(spans)
+    span, k = span_of_pixels(spans)
     value = start[span] + k[:, None] * step[span]
     if bend.any():
         # Whole numbers and fractions apart: both sums are then exact for the codes of legal spans.
@@ -135,9 +135,9 @@ def _pixels(spans: Spans, start: Reals, step: Reals, bend: Reals) -> tuple[Reals
     return value, spans["material"][span]
 
 
-def _span_of_pixels(spans: Spans) -> tuple[Ints, Ints]:
+def span_of_pixels(spans: Spans) -> tuple[Ints, Ints]:
     """The span of each pixel of `spans`, and the number of the pixel in it, int64[n] each."""
-    length = np.maximum(spans["length"], 1)
+    length = walked(spans)
     span = np.repeat(np.arange(len(spans)), length)
     return span, np.arange(len(span)) - np.repeat(np.cumsum(length) - length, length)
 
@@ -153,7 +153,7 @@ def _factors(frame: Frame, config: Config) -> list[Reals] | None:
     points of the table, straight between them; None if no light falls with the distance."""
     if frame.falloff is None or frame.depths is None:
         return None
-    span, k = _span_of_pixels(frame.spans)
+    span, k = span_of_pixels(frame.spans)
     at = np.linspace(0, 1, frame.falloff.shape[1])
     factors = []
     for its, points in zip(frame.depths, frame.falloff, strict=True):
@@ -230,7 +230,7 @@ def render(frame: Frame, config: Config = DEFAULT, sides: Sides | None = None) -
     placed = frame.half_vectors is not None or frame.falloff is not None
     if config.sums_lights or frame.further or table.highlight is not None or placed:
         lights = [frame.light(number, config) for number in range(frame.lights)]
-        span = _span_of_pixels(frame.spans)[0]
+        span = span_of_pixels(frame.spans)[0]
         eyes = [
             eye_of(np.stack(frame.half_vector_of(number, span, config)))
             for number in range(frame.lights)
@@ -285,7 +285,7 @@ def render_exact(
         return config.white * np.clip(normal, 0, 1)
     points = None
     if exact.places:
-        span, k = _span_of_pixels(frame.spans)
+        span, k = span_of_pixels(frame.spans)
         p = exact.point[span] + k[:, None] * exact.point_step[span]
         points = p[:, :3] / p[:, 3:]
     return shade_exact(normal, m, exact, frame.two_sided, config.white, sides, points)

@@ -55,10 +55,10 @@ static void shade_block(const word *const *memory, const word *scalar,
     }}
 }}
 
-// Shades the pixels of `spans` spans of length[span] >= 1 pixels from x[span] on. Writes the column
-// modulo 2^{place_bits} and the codes {{red, green, blue}} of each pixel.
+// Shades the pixels of `spans` spans of length[span] >= 1 pixels. Writes the column and the codes
+// {{red, green, blue}} of each pixel.
 extern "C" void shade(const word *const *memory, const word *scalar, const word *length,
-                      const word *x, word spans, word *column, word *codes) {{
+                      word spans, word *column, word *codes) {{
 {arguments}
     Block block;
     word span = 0, k = 0;
@@ -69,7 +69,6 @@ extern "C" void shade(const word *const *memory, const word *scalar, const word 
             const word input_span = span;
             for (word j = 0; j < take; ++j) {{
                 const word i = count + j, input_k = k + j;
-                column[i] = (x[span] + input_k) & {place_mask};
                 block.of_span[i] = span;
 {walk}
             }}
@@ -88,44 +87,49 @@ extern "C" void shade(const word *const *memory, const word *scalar, const word 
 """
 
 
-def _statements(results: Iterable[Node], address: Callable[[Memory], str]) -> list[str]:
+def _statements(
+    results: Iterable[Node], address: Callable[[Memory], str], name: Callable[[Node], str]
+) -> list[str]:
     """One statement for each operation that `results` need."""
     lines = []
     for node in live(list(results)):
         if node.operation in ("constant", "input"):
             continue
-        operands = [_name(operand) for operand in node.operands]
+        operands = [name(operand) for operand in node.operands]
         if node.operation == "load":
             assert isinstance(node.what, Memory)
             value = f"{address(node.what)}[{operands[0]}]"
         else:
             value = _EXPRESSIONS[node.operation].format(*operands)
-        lines.append(f"const word {_name(node)} = {value};")
+        lines.append(f"const word {name(node)} = {value};")
     return lines
 
 
-def _name(node: Node) -> str:
-    if node.operation == "constant":
-        return f"word({node.what})"
-    if node.operation == "input":
-        name = str(node.what)
-        return f"block.walked[{name[6:]}][i]" if name.startswith("walked") else f"input_{name}"
-    return f"v{node.number}"
-
-
-def source(program: Program, place_bits: int) -> str:
-    """The C++ text of `program`. place_bits: width of a place in the picture."""
+def source(program: Program) -> str:
+    """The C++ text of `program`."""
     tables: dict[tuple[int, ...], str] = {}
+    between = {node: f"block.walked[{n}][i]" for n, node in enumerate(program.between)}
 
     def address(memory: Memory) -> str:
         if memory.content is None:
             return f"memory_{memory.name}"
         return tables.setdefault(memory.content, f"table{len(tables)}")
 
-    walk = _statements(program.walked, address)
-    walk += [f"block.walked[{n}][i] = {_name(node)};" for n, node in enumerate(program.walked)]
-    shade = _statements(program.colours, address)
-    shade += [f"codes[3 * i + {c}] = {_name(node)};" for c, node in enumerate(program.colours)]
+    def name(node: Node) -> str:
+        if node.operation == "constant":
+            return f"word({node.what})"
+        if node.operation == "input":
+            return between.get(node, f"input_{node.what}")
+        return f"v{node.number}"
+
+    walk = _statements((program.column, *program.walked), address, name)
+    walk.append(f"column[i] = {name(program.column)};")
+    walk += [
+        f"{place} = {name(node)};"
+        for place, node in zip(between.values(), program.walked, strict=True)
+    ]
+    shade = _statements(program.colours, address, name)
+    shade += [f"codes[3 * i + {c}] = {name(node)};" for c, node in enumerate(program.colours)]
     given = [
         f"[[maybe_unused]] const word *__restrict memory_{name} = memory[{n}];"
         for n, name in enumerate(program.memories)
@@ -140,8 +144,7 @@ def source(program: Program, place_bits: int) -> str:
             for content, name in tables.items()
         ),
         arguments=_indented(given, 4), walk=_indented(walk, 16), shade=_indented(shade, 12),
-        walked_words=len(program.walked), block=BLOCK, place_bits=place_bits,
-        place_mask=(1 << place_bits) - 1,
+        walked_words=len(program.walked), block=BLOCK,
     )  # fmt: skip
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,7 +16,7 @@ from phong75.model.dataflow.graph import Graph, Memory, Node, live
 from phong75.model.dataflow.words import Places, Words, words
 from phong75.model.frame import Frame, FurtherLight, InputError, MaterialTable
 from phong75.model.reflectance import power_words
-from phong75.model.twin.core import phong_unit
+from phong75.model.twin.core import phong_unit, span_walker
 from phong75.model.twin.lights import lights_unit
 from phong75.model.twin.phong_pipeline import colours
 
@@ -24,12 +25,15 @@ from phong75.model.twin.phong_pipeline import colours
 class Program:
     """The graph of a configuration, in two parts with words between them.
 
-    walked: what the interpolators give at pixel `k` of span `span`, from these two inputs. colours:
-    red, green, blue, from the inputs `walked0`, `walked1`, ... and `span`. memories, scalars: names
-    of the arrays and of the other inputs that a frame brings (see `arguments`).
+    column: where pixel `k` of span `span` is, and walked: what the interpolators give there, both
+    from the inputs `span` and `k`. colours: red, green, blue, from the inputs `between`, which
+    stand for `walked`, and `span`. memories, scalars: names of the arrays and of the other inputs
+    that a frame brings (see `arguments`).
     """
 
+    column: Node
     walked: tuple[Node, ...]
+    between: tuple[Node, ...]
     colours: tuple[Node, ...]
     memories: tuple[str, ...]
     scalars: tuple[str, ...]
@@ -64,7 +68,7 @@ def _frame(config: Config, lights: int, graph: Graph) -> Frame:
         places("curve_jumps", rows, MAX_JUMPS, 3), places("weight_jumps", rows, MAX_JUMPS, 3),
     )  # fmt: skip
     spans: Any = {name: places(name, 0, 3) for name in ("bend", "start", "step")}
-    spans["material"] = places("material", 0)
+    spans |= {name: places(name, 0) for name in ("material", "x")}
     further = [
         FurtherLight(
             half_vector(light), places(f"start{light}", 0, 3), places(f"step{light}", 0, 3),
@@ -95,57 +99,67 @@ def trace(config: Config, lights: int = 1) -> Program:
     frame = _frame(config, lights, graph)
     span: Any = words([graph.input("span")])
     k: Any = words([graph.input("k")])
+    walked: list[Any]
+    results: Any
     if config.technique != "phong":
-        walked = _flat(colours(frame, span, k, config))
-        results = _given(graph, walked)
+        walked = [colours(frame, span, k, config)]
+        between = _given(graph, walked)
+        (results,) = between
     else:
-        walked, results = _phong(frame, span, k, config, graph)
-    return _program(walked, results)
-
-
-def _flat(*arrays: Any) -> Words:
-    return words([part for array in arrays for part in np.asarray(array, object).ravel()])
-
-
-def _given(graph: Graph, walked: Words) -> Words:
-    """Inputs in place of the results of the first part."""
-    return words([graph.input(f"walked{number}") for number in range(len(walked))])
-
-
-def _phong(frame: Frame, span: Ints, k: Ints, config: Config, graph: Graph) -> tuple[Words, Words]:
-    """`walked` and `colours` of Phong shading."""
-    material = frame.spans["material"][span]
-    if not config.sums_lights:
-        normal, _ = phong_unit.interpolate(frame.spans, span, k, config)
-        walked = _flat(normal, material)
-        given: Any = _given(graph, walked)
-        return walked, _flat(phong_unit.shade(given[:3, None], given[3:], frame, config))
-    normals = lights_unit.interpolate(frame, span, k, config)
-    count = np.size(normals)
-    if not config.attenuation:
-        walked, depths = _flat(normals, material), None
-        given = _given(graph, walked)
-    else:
-        walked = _flat(normals, material, lights_unit.depth_interpolators(frame, span, k, config))
-        given = _given(graph, walked)
-        depths = given[count + 1 :, None]
-    between = given[:count].reshape(np.shape(normals))
-    material = given[count : count + 1]
-    shaded = lights_unit.shade(between, material, frame, config, span=span, depths=depths)
-    return walked, _flat(shaded)
-
-
-def _program(walked: Words, results: Words) -> Program:
-    nodes = live([*walked, *results])
+        walked = _walked(frame, span, k, config)
+        between = _given(graph, walked)
+        results = _shaded(frame, span, between, config)
+    column = span_walker.column(frame.spans["x"][span], k, config)
+    own = {*_nodes(span), *_nodes(k), *_nodes(*between)}
+    given = [
+        node for node in live([*_nodes(column), *_nodes(*walked), *_nodes(results)])
+        if node not in own
+    ]  # fmt: skip
     memories = {
-        node.what.name for node in nodes
+        node.what.name for node in given
         if isinstance(node.what, Memory) and node.what.content is None
     }  # fmt: skip
-    inputs = {str(node.what) for node in nodes if node.operation == "input"}
-    own = {name for name in inputs if name in ("span", "k") or name.startswith("walked")}
+    scalars = {str(node.what) for node in given if node.operation == "input"}
     return Program(
-        tuple(walked), tuple(results), tuple(sorted(memories)), tuple(sorted(inputs - own))
-    )
+        _nodes(column)[0], _nodes(*walked), _nodes(*between), _nodes(results),
+        tuple(sorted(memories)), tuple(sorted(scalars)),
+    )  # fmt: skip
+
+
+def _nodes(*arrays: Any) -> tuple[Node, ...]:
+    return tuple(node for array in arrays for node in np.asarray(array, object).ravel())
+
+
+def _given(graph: Graph, arrays: list[Any]) -> list[Any]:
+    """Arrays of inputs in place of `arrays`."""
+    number = itertools.count()
+
+    def given(node: Node) -> Node:
+        return graph.input(f"walked{next(number)}")
+
+    return [np.frompyfunc(given, 1, 1)(np.asarray(a, object)).view(Words) for a in arrays]
+
+
+def _walked(frame: Frame, span: Ints, k: Ints, config: Config) -> list[Any]:
+    """What `_shaded` needs of the interpolators: normals, material and, if lights fall with the
+    distance, the distances."""
+    if config.sums_lights:
+        normals = lights_unit.interpolate(frame, span, k, config)
+    else:
+        normals, _ = phong_unit.interpolate(frame.spans, span, k, config)
+    found = [normals, frame.spans["material"][span]]
+    if config.attenuation:
+        found.append(lights_unit.depth_interpolators(frame, span, k, config))
+    return found
+
+
+def _shaded(frame: Frame, span: Ints, walked: list[Any], config: Config) -> Ints:
+    """The colours from what `_walked` gives."""
+    normals, material, *depths = walked
+    if not config.sums_lights:
+        return phong_unit.shade(normals, material, frame, config)
+    distances = depths[0] if depths else None
+    return lights_unit.shade(normals, material, frame, config, span=span, depths=distances)
 
 
 def arguments(frame: Frame, config: Config) -> dict[str, Ints | int]:
@@ -154,7 +168,7 @@ def arguments(frame: Frame, config: Config) -> dict[str, Ints | int]:
     found: dict[str, Any] = {
         "ambient": table.ambient, "weight": table.weight, "exponent": table.exponent,
         "bend": spans["bend"], "material": spans["material"], "two_sided": int(frame.two_sided),
-        "start": spans["start"], "step": spans["step"],
+        "start": spans["start"], "step": spans["step"], "x": spans["x"],
     }  # fmt: skip
     if frame.falloff is not None:
         found["falloff"] = frame.falloff

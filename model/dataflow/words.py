@@ -3,8 +3,8 @@
 
 The twin computes on int64 arrays whose last axis is the pixels. `Words` takes their place with one
 pixel: an array of objects, each a node of a `Graph` or a whole number. numpy hands its functions to
-`__array_ufunc__` and `__array_function__` below, which build nodes. What the twin does not use is
-not there and raises NotImplementedError.
+`__array_ufunc__` and `__array_function__` below, which build nodes. A function of numpy that the
+twin does not use raises TypeError.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ class Words(np.ndarray):
     ) -> Any:
         function = _UFUNCS.get(ufunc.__name__)
         if function is None:
-            raise NotImplementedError(f"{ufunc.__name__} of words")
+            raise TypeError(f"{ufunc.__name__} of words")
         if method == "reduce":
             (array,), axis = inputs, options.get("axis", 0)
             rows = np.moveaxis(np.asarray(array, object), axis, 0)
@@ -89,7 +89,7 @@ class Words(np.ndarray):
                 total = _each(function, total, row)
             return np.asarray(total, object).view(Words)
         if method != "__call__" or options:
-            raise NotImplementedError(f"{ufunc.__name__}.{method} of words with {options}")
+            raise TypeError(f"{ufunc.__name__}.{method} of words with {options}")
         made = _each(function, *inputs, results=ufunc.nout)
         if out is not None and isinstance(out[0], Words):
             np.ndarray.__setitem__(out[0], ..., np.asarray(made))
@@ -137,7 +137,7 @@ class Places:
         return (self[k] for k in range(len(self)))
 
     def __array__(self, *args: Any, **kwargs: Any) -> Any:
-        raise NotImplementedError(f"all words of {self.memory.name} at once")
+        raise TypeError(f"all words of {self.memory.name} at once")
 
     def __array_function__(self, func: Any, types: Any, args: Any, kwargs: Any) -> Any:
         return _function(func, args, kwargs)
@@ -178,21 +178,15 @@ class Places:
 def _load(memory: Memory, address: Words) -> Words:
     def load(x: Any) -> Any:
         if not isinstance(x, Node):
-            raise NotImplementedError(f"a fixed word of {memory.name}")
+            raise TypeError(f"a fixed word of {memory.name}")
         return x.graph.load(memory, x)
 
     return _each(load, address)
 
 
-def _table(content: np.ndarray) -> Memory:
-    """A constant table, named by its contents."""
-    codes = tuple(int(code) for code in content.ravel())
-    return Memory(f"table_{len(codes)}", codes)
-
-
 @rom.register
 def _(address: Words, table: Any) -> Words:
-    return _load(_table(np.asarray(table)), address)
+    return _load(Memory("constant table", tuple(np.asarray(table).tolist())), address)
 
 
 def _take(array: Places, indices: Words) -> Words:
@@ -200,7 +194,7 @@ def _take(array: Places, indices: Words) -> Words:
         return array[indices]
     whole = Places(array.memory, (int(np.prod(array.shape)),), array.offset)
     if array.strides != Places(array.memory, array.shape).strides:
-        raise NotImplementedError("np.take of a part of an array")
+        raise TypeError("np.take of a part of an array")
     return whole[indices]
 
 
@@ -245,5 +239,5 @@ _FUNCTIONS: dict[Callable, Callable] = {
 
 def _function(func: Callable, args: tuple, kwargs: dict) -> Any:
     if func not in _FUNCTIONS:
-        raise NotImplementedError(f"{func.__name__} of words")
+        raise TypeError(f"{func.__name__} of words")
     return _FUNCTIONS[func](*args, **kwargs)

@@ -19,6 +19,7 @@ from phong75.model.frame import Frame, with_lights
 from phong75.model.registers import writes
 from phong75.model.spans import turns, write_spans
 from phong75.model.twin import Pixels
+from phong75.model.twin.core.span_walker import pixel_count
 from phong75.sim import environment
 from phong75.sim.build import Bench, silent
 from phong75.sim.design import BUILD
@@ -147,7 +148,7 @@ def _simulate(
             descriptions.append({
                 "job": k, "skip": body_offset(path),
                 "spans": len(job.frame.spans) * turns(job.frame, config),
-                "pixels": int(np.maximum(job.frame.spans["length"], 1).sum()),
+                "pixels": pixel_count(job.frame.spans),
                 "idle": job.idle, "stall": job.stall, "seed": job.seed,
                 "stop_after": job.stop_after, "reset_first": job.reset_first,
                 "writes": writes(job.frame, config) if job.writes is None else job.writes,

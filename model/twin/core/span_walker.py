@@ -10,6 +10,7 @@ import numpy as np
 
 from phong75.model.arrays import Flags, Ints, Spans
 from phong75.model.config import Config
+from phong75.model.frame import walked
 
 #: Pixels that the twin works on at a time: the temporaries of one block fit the cache.
 BLOCK = 1 << 14
@@ -29,24 +30,30 @@ class WalkedPixels(NamedTuple):
     last: Flags
 
 
+def column(x: Ints, k: Ints, config: Config) -> Ints:
+    """The column of pixel `k` of spans that begin at `x`, int64[n] each: it wraps as the counter of
+    `coordinate_bits` does."""
+    return (x + k) & (config.max_size - 1)
+
+
 def span_walker(spans: Spans, first: int, stop: int, config: Config) -> WalkedPixels:
     """Pixels `first` to `stop` (exclusive) of the stream that `spans` (SPAN_DTYPE[n]) make.
 
-    x wraps as the counter of `coordinate_bits` does. A span of length 0 is walked as 1 pixel.
+    A span of length 0 is walked as 1 pixel.
     """
-    length = np.maximum(spans["length"], 1).astype(np.int64)
+    length = walked(spans)
     end = np.cumsum(length)
     pixel = np.arange(first, min(stop, int(end[-1]) if len(end) else 0))
     span = np.searchsorted(end, pixel, side="right")
     k = pixel - (end - length)[span]
-    x = (spans["x"][span] + k) & (config.max_size - 1)
+    x = column(spans["x"][span], k, config)
     last = spans["last"][span] & (k == length[span] - 1)
     return WalkedPixels(span, k, x, spans["y"][span].astype(np.int64), last)
 
 
 def pixel_count(spans: Spans) -> int:
     """How many pixels `spans` (SPAN_DTYPE[n]) make."""
-    return int(np.maximum(spans["length"], 1).sum())
+    return int(walked(spans).sum())
 
 
 def walk(spans: Spans, config: Config) -> Iterator[tuple[slice, WalkedPixels]]:

@@ -5,10 +5,9 @@ from __future__ import annotations
 
 import dataclasses
 
-import numpy as np
-
 from phong75.model.arrays import Flags, Spans
 from phong75.model.config import Config
+from phong75.model.frame import walked
 from phong75.model.twin.core.normalizer import leading_zeros
 from phong75.model.twin.core.phong_unit import interpolate
 from phong75.model.twin.core.span_walker import walk
@@ -27,7 +26,7 @@ def span_guard(spans: Spans, built: Config) -> Flags:
     step = spans["step"]
     moves = (step != 0) | (spans["bend"] != 0)
     bad = (longer & (fixed & moves | (step < -limit) | (step >= limit))).any(axis=1)
-    right = spans["x"] + np.maximum(spans["length"], 1) - 1
+    right = spans["x"] + walked(spans) - 1
     for largest, bits, idle in (
         (spans["material"], built.material_bits, built.idle_material_bits),
         (right, built.coordinate_bits, built.idle_x_bits),
