@@ -529,7 +529,7 @@ def _frame(header: dict[str, Any], body: bytes, config: Config) -> Frame:
     hx, hz = _half_vector("half_vector", header["half_vector"], config)
     if not isinstance(header["two_sided"], bool):
         raise InputError("two_sided is neither true nor false")
-    white = (1 << config.colour_bits) - 1
+    white = config.white
     red, green, blue = _integers("background", header["background"], 3, 0, white)
     materials, named = _materials(header["materials"], config)
     further = _lights(header, materials, config)

@@ -30,6 +30,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from phong75.model.analysis.reference import span_of_pixels
 from phong75.model.arrays import ArrayLike, Ints, Reals, Spans
 from phong75.model.config import DEFAULT, Config, Format
 from phong75.model.frame import Frame, with_lights
@@ -199,9 +200,8 @@ def reaches(frame: Frame) -> list[float]:
     Lengths are computed in float64, whose error the margin of 2**-40 covers.
     """
     spans = frame.spans
-    count = np.maximum(spans["length"], 1).astype(np.int64)
-    span = np.repeat(np.arange(len(spans)), count)
-    k = (np.arange(len(span)) - np.repeat(np.cumsum(count) - count, count))[:, None]
+    span, k = span_of_pixels(spans)
+    k = k[:, None]
 
     def squared(start: Ints, step: Ints) -> Reals:
         return np.square((start[span] + k * step[span]).astype(np.float64)).sum(axis=1)
@@ -523,7 +523,7 @@ def rows(
     """
     if tilt is None:
         raise ValueError("a quadratic normal is shorter than the error of its words")
-    white = (1 << config.colour_bits) - 1
+    white = config.white
     if config.sums_lights:
         return light_rows(material, frame, config, reaches(frame))
     if config.technique != "phong":
@@ -603,7 +603,7 @@ def rows(
 def light_rows(material: int, frame: Frame, config: Config, reach: list[float]) -> list[BudgetRow]:
     """The budget of one `material` of a frame with lights: the errors of all lights are added for
     the colour in which their sum is largest. reach: of each further light."""
-    white = (1 << config.colour_bits) - 1
+    white = config.white
     table, real = frame.materials, config.coefficient.real
     n = float(config.exponent.real(table.exponent[material]))
     points = table.weight[material]

@@ -700,7 +700,7 @@ NOTED_LSB = 0.1
 
 def _reflectance(material: Material, i: int, table: MaterialTable, config: Config) -> list[str]:
     """Set W of material `i` and, if `table` has curves, its curve of cos(s); returns notes."""
-    notes, white = [], (1 << config.colour_bits) - 1
+    notes, white = [], config.white
     points, jumps, smeared = weight_points(material.weight_curve, config)
     table.weight[i] = points
     if jump_count(jumps):

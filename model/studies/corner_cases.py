@@ -25,6 +25,7 @@ from phong75.model.frame import (
     FurtherLight,
     MaterialTable,
     half_vector_codes,
+    walked,
     with_lights,
 )
 from phong75.model.front import visibility
@@ -162,7 +163,7 @@ def dark_stays_ambient(frame: Frame, got: Pixels) -> list[str]:
     z = _normals(frame)[:, 2]
     dark = z == 0 if frame.two_sided else z <= 0
     ambient = frame.materials.ambient[_material(frame)[dark]]
-    white = (1 << C.colour_bits) - 1
+    white = C.white
     want = (ambient * white + C.coefficient.one // 2) >> C.coefficient.fraction
     wrong = int((got.rgb[dark] != want).any(axis=1).sum())
     return [f"{wrong} of {int(dark.sum())} dark pixels are not Cp d"] if wrong else []
@@ -627,7 +628,7 @@ def unlit_stays_ambient(frame: Frame, got: Pixels) -> list[str]:
         dark &= z == 0 if frame.two_sided else z <= 0
     dark |= (_normals(frame) == 0).all(axis=1)
     ambient = frame.materials.ambient[_material(frame)[dark]]
-    white = (1 << C.colour_bits) - 1
+    white = C.white
     want = (np.minimum(ambient, C.coefficient.one) * white + C.coefficient.one // 2) >> (
         C.coefficient.fraction
     )
@@ -1014,7 +1015,7 @@ def errors(frame: Frame, rgb: Ints, progress: Callable[[float], None] | None = N
     with `reference.render`, at a jump with the nearer side, in blocks, so that a frame of any size
     fits the memory. progress: called with the part done, 0 to 1.
     """
-    ends = np.cumsum(np.maximum(frame.spans["length"], 1))
+    ends = np.cumsum(walked(frame.spans))
     total = int(ends[-1]) if len(ends) else 0
     cuts = np.searchsorted(ends, np.arange(BLOCK, total, BLOCK))
     parts, done = [], 0

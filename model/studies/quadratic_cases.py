@@ -59,7 +59,7 @@ def _slivers_of_light(sign: int) -> CornerCase:
 
     def check(frame: Frame, got: Pixels) -> list[str]:
         ambient = frame.materials.ambient[np.repeat(frame.spans["material"], 40)]
-        white = (1 << C.colour_bits) - 1
+        white = C.white
         dark = (ambient * white + C.coefficient.one // 2) >> C.coefficient.fraction
         k = np.tile(np.arange(40), len(frame.spans))
         wrong = (got.rgb != dark).any(axis=1)

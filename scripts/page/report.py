@@ -537,7 +537,7 @@ def error_plot(rows: list[dict]) -> dict:
 
 def stages_plot(scenes: list[SceneResult]) -> dict:
     """The terms of the bound of each scene's worst material, on top of each other."""
-    white = (1 << C.colour_bits) - 1
+    white = C.white
     terms = ("diffuse term", "specular term", "W(i)", "cut of S")
     traces = []
     for k, term in enumerate(terms):

@@ -294,7 +294,7 @@ async def intensity_code_random(dut):
     """The limits of every code, the ends of [0, 1] and of the word, and random words."""
     tb = UnitTB(dut, MODULE)
     rng = np.random.default_rng(SEED)
-    white = (1 << C.colour_bits) - 1
+    white = C.white
     limits = np.round((np.arange(white + 1) + 0.5) / white * C.normal.one).astype(np.int64)
     near = (limits[:, None] + np.arange(-200, 201)).reshape(-1)
     value = np.concatenate([near, _edges(C.normal, rng, RANDOM)])

@@ -43,7 +43,7 @@ def intensity(
 
 def code(s: Ints, config: Config) -> Ints:
     """Stage 2: floor(255 S + 1/2) of S in `intensity` (u1.24, any shape); linear, no gamma."""
-    white = (1 << config.colour_bits) - 1
+    white = config.white
     return round_half_up(s * white, config.intensity.fraction)
 
 
