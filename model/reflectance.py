@@ -23,7 +23,7 @@ from phong75.model.arrays import ArrayLike, Flags, Ints, Reals
 from phong75.model.config import MAX_JUMPS, Config, Format
 
 #: Points at which a line is fitted to a curve, both ends included.
-_SAMPLES = 33
+SAMPLES = 33
 
 
 class Jump(NamedTuple):
@@ -177,7 +177,7 @@ def curve_words(curve: Curve, config: Config) -> tuple[Ints, Ints, list[Jump]]:
         else:
             places[jump.place] = nearest
             moved.append(jump)
-    fitted, part = curve.moved(places), np.linspace(0, 1, _SAMPLES)
+    fitted, part = curve.moved(places), np.linspace(0, 1, SAMPLES)
     c = 1 - cut.versine(part, config)
     # Limits from within the segment: from below at its upper end.
     upper = np.zeros_like(c, bool)
@@ -313,7 +313,7 @@ def weight_value(
 def curve_distance(curve: Curve, words: Ints, jumps: Ints, config: Config) -> float:
     """The largest distance of the tables (int64[S, 2], int64[J, 3]) from `curve`, but within two
     codes of a jump."""
-    v = np.unique(segments(config).versine(np.linspace(0, 1, _SAMPLES), config))
+    v = np.unique(segments(config).versine(np.linspace(0, 1, SAMPLES), config))
     v = v[(v >= 0) & (v < 1 - config.versine.lsb)]
     return _distance(
         curve, 1 - v,

@@ -301,7 +301,8 @@ def prove(
 
     1/sqrt and cos(s)^n are exhausted; branch and bound with intervals that are rounded outward
     covers all normals, directions of the eye, exponents and coefficients. Exit code 1 if a
-    certified bound is more than 1.05 times the worst input that `adversarial` found.
+    certified bound is too far above the worst input that `adversarial` found; the message says how
+    far that may be.
     """
     from phong75.scripts import prove as engine
 

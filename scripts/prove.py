@@ -59,6 +59,7 @@ def power_rows(config: Config, again: bool, done: Callable[[float], None]) -> li
     they are wanted `again`. Raises BuildError."""
     kept = recorded.figures("prove")
     if not again and kept.get("power_digest") == exhausted.power_digest(config):
+        console.note("the errors of cos(s)^n are those of results/prove.json; --again: anew")
         return [PowerRow(**row) for row in kept["power"]]
     return power_errors.rows(config, again=again, done=done)
 

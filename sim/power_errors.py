@@ -18,7 +18,8 @@ from phong75.model.config import Config
 from phong75.sim import build
 from phong75.sim.design import BUILD
 
-_FLAGS = ("-O3", "-march=native")
+#: No native instructions: a cached build may move to another machine.
+_FLAGS = ("-O3",)
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ corners are enough.
 
 What is covered
     Builds for one white light with the normal method `normalize` or `dot_first`, any method of
-    1/sqrt, and powers by tables. Every normal
-    but the zero vector, of any length, one- or two-sided. Every half vector that the span file
-    accepts: its length differs from 1 by at most sqrt(5)/2 of its LSB. n from 1 to 128.
-    Cp d + Cp (1 - d) at most 1; W at each of its points from 0 to 1. An unlit pixel is exact.
+    1/sqrt, and powers by tables. Every normal but the zero vector, of any length, one- or
+    two-sided. Every half vector that the span file accepts: its length differs from 1 by at most
+    sqrt(5)/2 of its LSB. n from 1 to 128. Cp d + Cp (1 - d) at most 1; W at each of its points from
+    0 to 1. An unlit pixel is exact.
 
 What is exhausted (`exhausted`)
     The relative error e of |m| / root(|m|**2) over every operand; the absolute error E of
@@ -39,8 +39,8 @@ How an error arises. All equations are exact; bounds are rounded outward by Arb.
     v = 2 |w|**2 has the error dv = 4 w.dw + 2 |dw|**2 + R''', clamped below 1.
     q = (1 - v)**n has the error dq = E - D dv, D the slope n (1 - v')**(n - 1) between v and
     v + dv.
-    W(i) has the error g dz + R'''', where g is between -32 and 32 (the number of lines of its
-    table), or 0 if W is constant. Between two lines g is between their slopes.
+    W(i) has the error g dz + R'''', where g is at most the number of lines of its table, either
+    way, or 0 if W is constant. Between two lines g is between their slopes.
     S has the error A dz + W dq + q' R'''' - cut, with A = Cp (1 - d) + g q', q' = q + dq.
 
     The sum is linear in r, in e and in each rounding, so its largest value has a closed form at

@@ -4,9 +4,8 @@
 A scene file names its shapes. Each shape is made anew from fine triangles, which decide what each
 pixel shows. The normal at a pixel is the exact normal of the surface where `surfaces` knows the
 surface (sphere, torus) and one white light at infinity shines on it, and else the normal of the
-fine mesh. A mesh file holds triangles and not
-the surface that they stand for, and a crease is meant as it is: a scene with one of them has no
-true picture.
+fine mesh. A mesh file holds triangles and not the surface that they stand for, and a crease is
+meant as it is: a scene with one of them has no true picture.
 """
 
 from __future__ import annotations

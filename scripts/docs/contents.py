@@ -7,13 +7,14 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from phong75.model.analysis import certificate
 from phong75.model.config import DEFAULT, TECHNIQUES
 from phong75.model.front import mesh_normals
 from phong75.model.front.mesh_files import materials
 from phong75.model.studies import corner_cases
 from phong75.model.studies.methods import CONFIGS
 from phong75.model.studies.shadings import FARTHEST_FACTOR
-from phong75.scripts import recorded
+from phong75.scripts import prove, recorded
 from phong75.scripts.configurations import BUILDS
 from phong75.scripts.docs import commands, facts, tables
 from phong75.sim import design
@@ -240,6 +241,8 @@ FIGURES: dict[str, Callable[[], str]] = {
     "bound.constant-n32": lambda: tables.above(_certified(32, steep=False)),
     "bound.constant-n128": lambda: tables.above(_certified(128, steep=False)),
     "prove.pairs": lambda: f"{sum(row['pairs'] for row in _record('prove')['power']) / 1e9:.0f}",
+    "prove.ratio": lambda: f"{prove.RATIO:g}",
+    "prove.limit": lambda: f"{0.5 + DEFAULT.white * certificate.LARGEST:.3f}",
     "bound.ratio": lambda: tables.above(_certified_ratio(), 3),
     "bound.intensity": lambda: tables.above(facts.intensity_bound(), 4),
     "bound.mantissa": facts.mantissa_error,

@@ -26,7 +26,7 @@ from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_co
 from phong75.model.front.mesh_files import library
 from phong75.model.front.scene import SHAPES, load_scene
 from phong75.model.front.vectors import normalize
-from phong75.model.reflectance import Power, curve_distance, curve_words
+from phong75.model.reflectance import SAMPLES, Power, curve_distance, curve_words
 from phong75.model.scene_to_frame import front_end
 from phong75.model.studies import corner_cases, light_places
 from phong75.model.studies.methods import FRAMES, points
@@ -281,7 +281,7 @@ def curve_powers() -> str:
     rows = []
     for n in (0, 0.25, 0.5, 0.75, 1, 1.5, 2, 5, 10, 32, 128):
         words, jumps, _ = curve_words(Power(n), C)
-        apart = 255 * curve_distance(Power(n), words, jumps, C)
+        apart = C.white * curve_distance(Power(n), words, jumps, C)
         rows.append((f"{n:g}", f"{apart:.3f}"))
     return markdown(("n", "largest distance, LSB"), rows, left=1)
 
@@ -289,7 +289,7 @@ def curve_powers() -> str:
 def _chord_distance(ends: np.ndarray, n: float) -> float:
     """How far straight lines over 1 - cos(s) are from cos(s)**n at W = 1, LSB: chords between the
     `ends` (float64[S + 1], increasing), each moved by half of its largest error, not rounded."""
-    part = np.linspace(0, 1, 33)[:, None]
+    part = np.linspace(0, 1, SAMPLES)[:, None]
     value = np.power(np.clip(1 - (ends[:-1] + part * np.diff(ends)), 0, 1), n)
     bend = value - (value[0] + part * (value[-1] - value[0]))
     return C.white * float(np.ptp(bend, axis=0).max()) / 2
