@@ -29,6 +29,7 @@ from phong75.sim import design
 from phong75.sim.build import BuildError
 from phong75.sim.frame.run_frame import SimResult, SimulationError
 from tests.mesh_writers import CUBE, SQUARES, obj
+from tests.wrong_results import extra_pixel, far_away, lost_pixel, wrong_colour
 
 ROOT = Path(__file__).resolve().parent.parent
 FILES = ["error.png", "frame.png", "reference.png", "report.json", "spans"]
@@ -240,23 +241,6 @@ def test_the_older_techniques_can_be_pruned_to_grey(start, scene, tmp_path, tech
 
 
 # -- exit code 1 -----------------------------------------------------------------------------------
-
-
-def wrong_colour(result):
-    result.pixels.rgb[5, 1] ^= 1
-
-
-def lost_pixel(result):
-    for name in ("x", "y", "rgb", "last"):
-        setattr(result.pixels, name, getattr(result.pixels, name)[:-1])
-
-
-def extra_pixel(result):
-    result.extra_pixels = 1
-
-
-def far_away(result):
-    result.pixels.x[0] += 1000
 
 
 @pytest.mark.parametrize("change", [wrong_colour, lost_pixel, extra_pixel, far_away])

@@ -37,6 +37,7 @@ from phong75.sim import design
 from phong75.sim.build import Bench, BuildError
 from phong75.sim.frame.run_frame import SimJob, SimResult, simulate_jobs
 from tests.records import differences
+from tests.wrong_results import extra_pixel, far_away, lost_pixel, wrong_colour
 
 GREY, BLUE, WHITE = (0xD3, 0xD7, 0xDC), (0x00, 0x57, 0xD8), (255, 255, 255)
 
@@ -407,23 +408,6 @@ def test_nothing_to_see_is_good(start, write, tmp_path):
     code, _, lines = start(write(SMALL.replace("[[", f"{away}[[", 1)), draw=write_sheet)
     assert (code, lines) == (0, [])
     assert {row["pixels"] for row in found(tmp_path)["shadings"]} == {0}
-
-
-def wrong_colour(result):
-    result.pixels.rgb[5, 1] ^= 1
-
-
-def lost_pixel(result):
-    for name in ("x", "y", "rgb", "last"):
-        setattr(result.pixels, name, getattr(result.pixels, name)[:-1])
-
-
-def extra_pixel(result):
-    result.extra_pixels = 1
-
-
-def far_away(result):
-    result.pixels.x[0] += 1000
 
 
 def unsupported(result):
