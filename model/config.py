@@ -27,6 +27,9 @@ MAX_LIGHTS = 8
 #: The largest number of jumps of W(i), and of a curve of cos(s), of one material.
 MAX_JUMPS = 4
 
+#: The largest exponent n that the hardware is specified for.
+MAX_EXPONENT = 128
+
 #: Possible numbers of shading units side by side.
 UNITS = (1, 2, 4, 8)
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from phong75.model.arrays import ArrayLike, Flags, Ints, Reals, Spans
-from phong75.model.config import Config
+from phong75.model.config import MAX_EXPONENT, Config
 from phong75.model.places import Falloff, Place
 from phong75.model.reflectance import Curve, jump_count
 
@@ -100,7 +100,7 @@ class MaterialTable:
 
         cp: float[3], the colour Cp. d: the ambient share. weight: float[P], W at the points of the
         table. n: the exponent. Raises InputError if a value is outside [0, 1] (n: outside
-        [1, 128]).
+        1 to MAX_EXPONENT).
         """
         cp, weight = np.asarray(cp, float), np.asarray(weight, float)
         for name, value in (("Cp", cp), ("d", np.asarray(d, float)), ("W", weight)):
@@ -108,8 +108,8 @@ class MaterialTable:
             if outside.any():
                 wrong = np.ravel(value)[outside][0]
                 raise InputError(f"material {index}: {name} = {wrong} is outside [0, 1]")
-        if not 1 <= n <= 128:
-            raise InputError(f"material {index}: n = {n} is outside [1, 128]")
+        if not 1 <= n <= MAX_EXPONENT:
+            raise InputError(f"material {index}: n = {n} is outside [1, {MAX_EXPONENT}]")
         self.ambient[index] = config.coefficient.quantize(cp * d)
         self.diffuse[index] = config.coefficient.quantize(cp) - self.ambient[index]
         self.weight[index] = config.coefficient.quantize(weight)

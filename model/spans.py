@@ -64,7 +64,7 @@ from numpy.typing import NDArray
 
 from phong75.model import quadratic_spans
 from phong75.model.arrays import Flags, Ints, Spans
-from phong75.model.config import MAX_JUMPS, Config
+from phong75.model.config import MAX_EXPONENT, MAX_JUMPS, Config
 from phong75.model.frame import SPAN_DTYPE, Frame, FurtherLight, InputError, MaterialTable
 from phong75.model.reflectance import power_words
 
@@ -85,9 +85,6 @@ FORMATS = (
 
 #: The same for `Config.normal_order` 2; a file without them is of order 1.
 ORDER_2_FORMATS = ("normal_order", "bend_fraction_bits")
-
-#: The largest exponent n that the hardware is specified for.
-MAX_EXPONENT = 128
 
 #: The columns of `MaterialTable` that a frame without curves and jumps does not have.
 REFLECTANCE = ("curve", "curve_jumps", "weight_jumps")

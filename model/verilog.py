@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import dataclasses
 
-from phong75.model.config import MAX_JUMPS, Config, Format
+from phong75.model.config import MAX_EXPONENT, MAX_JUMPS, Config, Format
 from phong75.model.registers import FIELDS, address_bits
 from phong75.model.spans import record_bits, span_fields
 from phong75.model.tables import Table, tables
@@ -65,6 +65,7 @@ def header(config: Config) -> str:
     lines.append(f"`define PHONG_RECORD_BITS {record_bits(config)}")
     lines.append(f"`define PHONG_ADDRESS_BITS {address_bits(config)}")
     lines.append(f"`define PHONG_MAX_JUMPS {MAX_JUMPS}")
+    lines.append(f"`define PHONG_MAX_EXPONENT {MAX_EXPONENT}")
     for name in (
         "sums_lights", "rounds_highlight", "turns", "turn_bits", "light_bits", "segment_bits",
         "has_curves",

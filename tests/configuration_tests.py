@@ -21,13 +21,13 @@ import numpy as np
 from phong75.model import twin
 from phong75.model.analysis import metrics, pruning
 from phong75.model.config import DEFAULT as C
-from phong75.model.config import MAX_JUMPS, TECHNIQUES, Config
+from phong75.model.config import MAX_EXPONENT, MAX_JUMPS, TECHNIQUES, Config
 from phong75.model.frame import Frame, fitted
 from phong75.model.front.scene import load_scene
 from phong75.model.reflectance import segments
 from phong75.model.registers import address_bits, writes
 from phong75.model.scene_to_frame import front_end
-from phong75.model.spans import MAX_EXPONENT, bent_beyond, illegal_spans, turns
+from phong75.model.spans import bent_beyond, illegal_spans, turns
 from phong75.model.studies.methods import CONFIGS
 from phong75.model.studies.random_frames import placed, random_frame, random_lights
 from phong75.model.twin.core.register_map import unsupported_write, vanishing_exponent

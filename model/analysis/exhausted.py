@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from phong75.model.arrays import Ints
-from phong75.model.config import Config
+from phong75.model.config import MAX_EXPONENT, Config
 from phong75.model.tables import exp_table, log_table
 from phong75.model.twin.core.inverse_sqrt import inverse_sqrt
 from phong75.model.twin.core.specular_power_tables import log_bits
@@ -23,8 +23,8 @@ from phong75.model.twin.core.specular_power_tables import log_bits
 #: The program that exhausts cos(s)**n; it includes `power_header` as power_tables.h.
 SOURCE = Path(__file__).with_name("power_errors.cpp")
 
-#: Whole parts of n: 1 to 128, the last for n = 128 alone.
-WHOLE_PARTS = range(1, 129)
+#: Whole parts of n. The last one is of a single n.
+WHOLE_PARTS = range(1, MAX_EXPONENT + 1)
 
 #: How far an error that power_errors.cpp prints may be from the true one: its (1 - v)**n, at most
 #: 1, is wrong by less than 2**-40; the difference from the power is rounded once.

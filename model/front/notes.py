@@ -26,6 +26,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from phong75.model.config import MAX_EXPONENT
 from phong75.model.frame import InputError
 
 SCENE_SUFFIX, OBJECT_SUFFIX = ".scn", ".des"
@@ -144,7 +145,7 @@ def read_object(path: Path) -> NotesObject:
         polygons.append(tuple(numbers.whole(what, 0, count - 1) for _ in range(corners)))
     diffuse = numbers.triple("kr", "kg", "kb", low=0.0, high=1.0)
     specular = numbers.real("ks", 0.0, 1.0)
-    exponent = None if numbers.ended else numbers.real("n", 1.0, 128.0)
+    exponent = None if numbers.ended else numbers.real("n", 1.0, MAX_EXPONENT)
     numbers.finish()
     return NotesObject(points, polygons, diffuse, specular, exponent)
 

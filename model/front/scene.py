@@ -89,7 +89,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from phong75.model.arrays import ArrayLike, Flags, Ints, Reals
-from phong75.model.config import DEFAULT, MAX_LIGHTS, Config
+from phong75.model.config import DEFAULT, MAX_EXPONENT, MAX_LIGHTS, Config
 from phong75.model.frame import InputError
 from phong75.model.front import mid_edge_normals, notes, shapes
 from phong75.model.front.camera import (
@@ -581,7 +581,7 @@ def _material(table: _Table) -> Material:
     material = Material(
         table.triple("color", default.color, 0.0, 1.0),
         table.real("d", default.d, 0.0, 1.0),
-        table.real("n", default.n, 0.0, 128.0),
+        table.real("n", default.n, 0.0, MAX_EXPONENT),
         zn or default.weight_zn,
         values or default.weight_values,
         emission=table.triple("emission", BLACK, 0.0, 1.0),

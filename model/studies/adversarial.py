@@ -27,7 +27,7 @@ import numpy as np
 from phong75.model.analysis import error_budget, reference
 from phong75.model.arrays import Ints, Reals, Trace
 from phong75.model.config import DEFAULT as C
-from phong75.model.config import Config
+from phong75.model.config import MAX_EXPONENT, Config
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable
 from phong75.model.twin.core.normalizer import leading_zeros
 from phong75.model.twin.core.phong_unit import shade
@@ -37,7 +37,7 @@ from phong75.model.twin.core.specular_power_tables import specular_power_tables
 KEPT = Path(__file__).parent.parent / "data" / "adversarial.json"
 
 #: Largest exponents n of the families.
-LIMITS = (10, 32, 128)
+LIMITS = (10, 32, MAX_EXPONENT)
 
 #: Code of 1.0 in `Config.coefficient`.
 ONE = C.coefficient.one

@@ -141,7 +141,7 @@ module register_map #(
     end else begin : gen_check
       localparam [COEFFICIENT_BITS-1:0] COEFFICIENT_ONE = 1 << `PHONG_COEFFICIENT_FRACTION;
       localparam [COEFFICIENT_BITS+1:0] END_ONE = 1 << `PHONG_COEFFICIENT_FRACTION;
-      localparam [EXPONENT_BITS-1:0] MOST = 128 << EXPONENT_FRACTION;
+      localparam [EXPONENT_BITS-1:0] MOST = `PHONG_MAX_EXPONENT << EXPONENT_FRACTION;
 
       // W at the right end of an interval, in two's complement.
       wire signed [COEFFICIENT_BITS+1:0] end_code = $signed({1'b0, code}) + $signed(step);

@@ -21,7 +21,7 @@ from phong75.model import registers, spans
 from phong75.model.analysis import error_budget
 from phong75.model.analysis.pruning import prune
 from phong75.model.config import DEFAULT as C
-from phong75.model.config import TECHNIQUES, Config, Format
+from phong75.model.config import MAX_EXPONENT, TECHNIQUES, Config, Format
 from phong75.model.frame import SPAN_DTYPE, Frame, MaterialTable, half_vector_codes
 from phong75.model.front.mesh_files import library
 from phong75.model.front.scene import SHAPES, load_scene
@@ -166,7 +166,7 @@ def register_table(config: Config = C) -> str:
          f"Cp·d of red, green, blue ({c})"),
         (f"`{{1, material, {field['diffuse']}…{field['diffuse'] + 2}}}`",
          f"Cp·(1 − d) of red, green, blue ({c})"),
-        (f"`{{1, material, {field['exponent']}}}`", f"n ({config.exponent}), 1 to 128"),
+        (f"`{{1, material, {field['exponent']}}}`", f"n ({config.exponent}), 1 to {MAX_EXPONENT}"),
         (f"`{{1, any, {field['half_x']}}}`, `{{1, any, {field['half_z']}}}`",
          f"hx, hz ({config.half_vector}): h = (sin ½a, 0, cos ½a) for an eye at angle a from the "
          "light"),

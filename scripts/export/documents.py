@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from phong75.model.config import Config
+from phong75.model.config import MAX_EXPONENT, Config
 from phong75.model.registers import FIELDS, address_bits, word_bits
 from phong75.model.spans import SpanField, span_fields
 from phong75.model.twin.core.register_map import vanishing_exponent
@@ -204,7 +204,8 @@ def _write_rows(config: Config) -> list[tuple]:
         power = "; ".join([power, *limits])
     if config.has_curves:
         power = "not used: lines of the curve take its place"
-    rows.append((f"{{{any_light}1, material, {FIELDS['exponent']}}}", str(n), "n, 1 to 128", power))
+    place = f"{{{any_light}1, material, {FIELDS['exponent']}}}"
+    rows.append((place, str(n), f"n, 1 to {MAX_EXPONENT}", power))
     for k, axis in enumerate("xz"):
         state = "writable" if config.specular else "left out: no effect"
         if config.constant_half_vector:

@@ -22,12 +22,13 @@ from typing import Any
 import numpy as np
 
 from phong75.model.arrays import Ints, Reals
+from phong75.model.config import MAX_EXPONENT
 
 #: d of materials from files: formats have no such share, or a value that few writers set with care.
 AMBIENT_SHARE = 0.15
 
 #: The range of n, to which exponents of files are limited.
-LEAST_N, MOST_N = 1.0, 128.0
+LEAST_N, MOST_N = 1.0, float(MAX_EXPONENT)
 
 #: Rounds of moving each material of a reduced table to the mean of what it stands for.
 ROUNDS = 8

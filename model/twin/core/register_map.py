@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from phong75.model.config import Config
+from phong75.model.config import MAX_EXPONENT, Config
 from phong75.model.registers import FIELDS
-from phong75.model.spans import MAX_EXPONENT
 from phong75.model.twin.reflectance.reflectance_map import reflectance_map
 
 
