@@ -20,7 +20,7 @@ import numpy as np
 from rich.table import Table
 
 from phong75.model import twin
-from phong75.model.analysis import error_budget, metrics, pictures, reference, run_report, undecided
+from phong75.model.analysis import error_budget, metrics, pictures, run_report, undecided
 from phong75.model.analysis.pruning import BY_HAND
 from phong75.model.config import DEFAULT, Config
 from phong75.model.frame import Frame, InputError, fitted
@@ -203,8 +203,7 @@ def shade(scene: Scene, shading: Shading, steps: Steps) -> Shaded:
             [SimJob(frame)], config, progress=lambda text: step.phase(f"{shading.title}: {text}")
         )[0]
     pixels = simulation.pixels
-    ideal = reference.render(frame, config)
-    ideal = undecided.nearest(pixels.rgb, ideal, frame, config).ideal
+    ideal = undecided.nearest(pixels.rgb, frame, config).ideal
     both = min(len(ideal), len(pixels))  # a broken stream may be shorter or longer
     codes = np.full((frame.height, frame.width, 3), -1)
     inside = (pixels.x < frame.width) & (pixels.y < frame.height)

@@ -25,7 +25,6 @@ from phong75.model.analysis import (
     metrics,
     pictures,
     pruning,
-    reference,
     run_report,
     undecided,
 )
@@ -194,11 +193,8 @@ def _reference(stimulus: Stimulus, simulation: SimResult, steps: Steps) -> Ideal
     frame, exact, config = stimulus.frame, stimulus.exact, stimulus.full
     codes = simulation.pixels.rgb
     with steps.step("reference"):
-        ports = undecided.nearest(codes, reference.render(frame, config), frame, config)
-        scene = None
-        if exact:
-            scene = reference.render_exact(frame, exact, config)
-            scene = undecided.nearest(codes, scene, frame, config, exact).ideal
+        ports = undecided.nearest(codes, frame, config)
+        scene = undecided.nearest(codes, frame, config, exact).ideal if exact else None
         return Ideal(ports.ideal, scene, error_budget.bound_lsb(frame, config), ports.undecided)
 
 

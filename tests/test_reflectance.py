@@ -152,10 +152,8 @@ def errors(made, config=None):
     frame, exact = made.frame, made.exact
     config = config or fitted(C, frame)
     codes = twin.render(frame, config).rgb
-    ports = undecided.nearest(codes, reference.render(frame, config), frame, config)
-    scene = undecided.nearest(
-        codes, reference.render_exact(frame, exact, config), frame, config, exact
-    )
+    ports = undecided.nearest(codes, frame, config)
+    scene = undecided.nearest(codes, frame, config, exact)
     assert ports.undecided < 0.005 * len(codes)
     apart = [float(np.abs(codes - part.ideal).max()) for part in (ports, scene)]
     return *apart, error_budget.bound_lsb(frame, config)
@@ -216,7 +214,7 @@ def test_powers_below_1_at_grazing_angles_are_within_the_bound():
     frame.materials.curve = None
     config = CURVE
     codes = twin.render(frame, config).rgb
-    ideal = undecided.nearest(codes, reference.render(frame, config), frame, config).ideal
+    ideal = undecided.nearest(codes, frame, config).ideal
     assert np.abs(codes - ideal).max() <= error_budget.bound_lsb(frame, config)
 
 
@@ -225,7 +223,7 @@ def test_random_curves_and_jumps_are_within_the_bound_which_is_not_wide():
     frame.materials.curve[..., 1] = 0
     config = fitted(C, frame)
     codes = twin.render(frame, config).rgb
-    near = undecided.nearest(codes, reference.render(frame, config), frame, config)
+    near = undecided.nearest(codes, frame, config)
     bound = error_budget.bound_lsb(frame, config)
     error = np.abs(codes - near.ideal).max()
     assert error <= bound < 2

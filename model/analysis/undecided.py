@@ -57,14 +57,16 @@ def _sides(frame: Frame, config: Config, rounded: bool) -> reference.Sides:
     return reference.Sides(cosine, versine)
 
 
-def nearest(
-    codes: Ints, ideal: Reals, frame: Frame, config: Config, exact: ExactFrame | None = None
-) -> Nearest:
-    """`ideal` (float64[n, 3]), moved towards `codes` (int64[n, 3]) where a pixel is at a jump.
+def nearest(codes: Ints, frame: Frame, config: Config, exact: ExactFrame | None = None) -> Nearest:
+    """`reference.render`, or with `exact` `reference.render_exact`, moved towards `codes`
+    (int64[n, 3]) where a pixel is at a jump. Rows beyond those of `codes` stay as they are."""
 
-    ideal: of `reference.render`, or with `exact` of `reference.render_exact`. Rows beyond those of
-    `codes` stay as they are.
-    """
+    def rendered(sides: reference.Sides | None = None) -> Reals:
+        if exact is None:
+            return reference.render(frame, config, sides)
+        return reference.render_exact(frame, exact, config, sides)
+
+    ideal = rendered()
     table = frame.materials
     jumps = table.curve is not None or table.weight_jumps is not None or config.has_curves
     if config.technique != "phong" or not jumps:
@@ -72,11 +74,7 @@ def nearest(
     far, low, high = _sides(frame, config, exact is not None), ideal, ideal
     for weight in (-far.weight, far.weight):
         for versine in (far.versine, lambda v: -far.versine(v)):
-            sides = reference.Sides(weight, versine)
-            if exact is None:
-                other = reference.render(frame, config, sides)
-            else:
-                other = reference.render_exact(frame, exact, config, sides)
+            other = rendered(reference.Sides(weight, versine))
             low, high = np.minimum(low, other), np.maximum(high, other)
     undecided = int(((high - low).max(axis=1, initial=0) > UNDECIDED_LSB).sum())
     both = min(len(codes), len(ideal))

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from phong75.model.analysis import reference, undecided
+from phong75.model.analysis import undecided
 from phong75.model.arrays import ArrayLike, Flags, Ints, Reals, Spans
 from phong75.model.config import DEFAULT as C
 from phong75.model.config import MAX_JUMPS
@@ -1022,11 +1022,10 @@ def errors(frame: Frame, rgb: Ints, progress: Callable[[float], None] | None = N
     for rows in np.split(np.arange(len(frame.spans)), cuts):
         if len(rows):
             part = frame.take(rows)
-            exact = reference.render(part)
-            codes = rgb[done : done + len(exact)]
-            exact = undecided.nearest(codes, exact, part, with_lights(C, frame)).ideal
-            parts.append(np.abs(codes - exact).max(axis=1))
-            done += len(exact)
+            codes = rgb[done : done + int(walked(part.spans).sum())]
+            ideal = undecided.nearest(codes, part, with_lights(C, frame)).ideal
+            parts.append(np.abs(codes - ideal).max(axis=1))
+            done += len(ideal)
             if progress:
                 progress(done / total)
     return np.concatenate(parts or [np.zeros(0)])
